@@ -1,0 +1,341 @@
+#include "dem/advance_grains.hpp"
+
+#include "core/errors.hpp"
+#include "core/parallel.hpp"
+#include "dem/contact_sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace plumb {
+
+namespace {
+
+// Skin of the neighbour list in radii of the smallest grain: a wider one is rebuilt less often but holds more pairs that
+// do not touch (measured in solver/benchmarks).
+constexpr double skin_in_radii = 0.1;
+constexpr double far_away = 1e30; // [m] position of the record that pads the list; it touches nothing
+
+/// Inverse mass as a contact feels it: a block moves as a whole, a fixed grain not at all.
+std::vector<double> inverse_contact_masses(const GrainSystem& system) {
+    std::vector<double> block_mass(system.groups.size(), 0.0);
+    const Grains& g = system.grains;
+    for (std::size_t k = 0; k < g.size(); ++k) block_mass[static_cast<std::size_t>(g.group[k])] += g.mass[k];
+    std::vector<double> inverse(g.size());
+    for (std::size_t k = 0; k < g.size(); ++k) {
+        const auto group = static_cast<std::size_t>(g.group[k]);
+        const Motion motion = system.groups[group].motion;
+        inverse[k] = motion == Motion::fixed ? 0.0 : 1.0 / (motion == Motion::block ? block_mass[group] : g.mass[k]);
+    }
+    return inverse;
+}
+
+void write_record(Neighbours& list, std::size_t k, const Vec3& x, const Vec3& v, const Vec3& surface) {
+    GrainRecord& record = list.records[k];
+    record.x = x[0], record.y = x[1], record.z = x[2];
+    record.vx = v[0], record.vy = v[1], record.vz = v[2];
+    SpinRecord& spin = list.spins[k];
+    spin.x = surface[0], spin.y = surface[1], spin.z = surface[2];
+}
+
+/// Records of all grains in the present order; positions and velocities are those of the present state.
+void fill_records(GrainSystem& system) {
+    const Grains& g = system.grains;
+    const std::vector<double> inverse_mass = inverse_contact_masses(system);
+    Neighbours& list = system.neighbours;
+    list.records.resize(g.size() + 1);
+    list.spins.resize(g.size() + 1);
+    for (std::size_t k = 0; k < g.size(); ++k) {
+        list.records[k].radius = g.radius[k];
+        list.records[k].inverse_mass = inverse_mass[k];
+        list.spins[k].material = g.group[k];
+        write_record(list, k, g.x[k], g.v[k], g.radius[k] * g.omega[k]);
+    }
+    list.records[g.size()] = {far_away, far_away, far_away, 1.0, 0.0, 0.0, 0.0, 1.0};
+    list.spins[g.size()] = {0.0, 0.0, 0.0, 0.0};
+}
+
+/// The step functions of one grain: those of the fluid exchange, or plain velocity Verlet without a fluid.
+struct StepFunctions {
+    double phi0 = 1.0, phi1 = 1.0, phi2 = 0.5;
+    Vec3 drive = Vec3::Zero();
+};
+StepFunctions step_functions(const FluidForcing* forcing, std::size_t k) {
+    if (forcing == nullptr) return {};
+    return {forcing->phi0[k], forcing->phi1[k], forcing->phi2[k], forcing->drive[k]};
+}
+
+/// Velocity at the end of the step if the contacts stayed as they are; the contacts of the new positions see this one.
+Vec3 predicted_velocity(const Grains& g, std::size_t k, const StepFunctions& f, double dt) {
+    return f.phi0 * g.v[k] + (dt * f.phi1) * (g.a[k] + f.drive);
+}
+
+[[noreturn]] void report_divergence(const GrainSystem& system, std::size_t k, double dt, double moved) {
+    const Grains& g = system.grains;
+    if (!std::isfinite(moved))
+        throw Diverged(system.step + 1, dt * static_cast<double>(system.step + 1), "position", g.id[k], moved,
+                       "not finite");
+    throw Diverged(system.step + 1, dt * static_cast<double>(system.step + 1), "displacement in one step", g.id[k],
+                   moved, "more than its radius");
+}
+
+/// Moves grain k to the end of the step and writes its record. Returns the distance squared moved in this step.
+double drift_grain(GrainSystem& system, std::size_t k, double dt, const FluidForcing* forcing) {
+    Grains& g = system.grains;
+    const StepFunctions f = step_functions(forcing, k);
+    const Vec3 predicted = predicted_velocity(g, k, f, dt);
+    const Vec3 omega = g.omega[k] + dt * g.alpha[k];
+    Vec3 moved;
+    if (system.integrator == Integrator::velocity_verlet) {
+        moved = (dt * f.phi1) * g.v[k] + (dt * dt * f.phi2) * (g.a[k] + f.drive);
+    } else {
+        g.v[k] = predicted;
+        g.omega[k] = omega;
+        moved = dt * predicted;
+    }
+    g.x[k] += moved;
+    write_record(system.neighbours, k, g.x[k], predicted, g.radius[k] * omega);
+    return moved.squaredNorm();
+}
+
+/// Drifts all grains; returns true when the neighbour list no longer holds.
+bool drift(GrainSystem& system, double dt, const FluidForcing* forcing) {
+    Grains& g = system.grains;
+    const bool collide = !contactless(system.contact);
+    double fastest_wall = 0.0;
+    for (const WallBody& wall : system.walls) fastest_wall = std::max(fastest_wall, wall.velocity.norm());
+    const double since = dt * static_cast<double>(system.step + 1) - system.listed_time;
+    const double allowed = 0.5 * system.neighbours.skin - fastest_wall * since;
+    const double allowed_sq = allowed > 0.0 ? allowed * allowed : 0.0;
+    std::vector<std::uint8_t> left((g.size() + parallel_chunk - 1) / parallel_chunk, 0);
+    parallel_chunks(g.size(), [&](std::size_t begin, std::size_t end) {
+        bool leaves = allowed <= 0.0;
+        for (std::size_t k = begin; k < end; ++k) {
+            const double moved_sq = drift_grain(system, k, dt, forcing);
+            // written so that NaN is caught; without contacts a grain may move as far as it likes
+            const bool sound = collide ? moved_sq <= g.radius[k] * g.radius[k] : std::isfinite(moved_sq);
+            if (!sound) report_divergence(system, k, dt, std::sqrt(moved_sq));
+            leaves = leaves || (g.x[k] - g.x_listed[k]).squaredNorm() > allowed_sq;
+        }
+        left[begin / parallel_chunk] = leaves ? 1 : 0;
+    });
+    return collide && std::any_of(left.begin(), left.end(), [](std::uint8_t l) { return l != 0; });
+}
+
+/// Contact force and torque on grain k: its own pairs, then those in which it is the second, in the order of the list.
+struct Wrench {
+    Vec3 force, torque;
+};
+Wrench contact_wrench(const GrainSystem& system, std::size_t k) {
+    const Neighbours& list = system.neighbours;
+    PairForce own{}, incoming{};
+    for (auto p = static_cast<std::size_t>(list.own[k]); p < static_cast<std::size_t>(list.own[k + 1]); ++p)
+        own += list.force[p];
+    for (auto q = static_cast<std::size_t>(list.incoming_begin[k]);
+         q < static_cast<std::size_t>(list.incoming_begin[k + 1]); ++q)
+        incoming += list.force[static_cast<std::size_t>(list.incoming[q])];
+    const PairForce reaction{-1, -1, -1, 1, 1, 1, 0, 0}; // forces are opposite, torques per radius the same
+    const PairForce sum = own + reaction * incoming;
+    Wrench wrench{{sum[0], sum[1], sum[2]}, system.grains.radius[k] * Vec3(sum[3], sum[4], sum[5])};
+    if (list.rolls) {
+        for (auto p = static_cast<std::size_t>(list.own[k]); p < static_cast<std::size_t>(list.own[k + 1]); ++p)
+            wrench.torque += Vec3(list.couple[p][0], list.couple[p][1], list.couple[p][2]);
+        for (auto q = static_cast<std::size_t>(list.incoming_begin[k]);
+             q < static_cast<std::size_t>(list.incoming_begin[k + 1]); ++q) {
+            const PairCouple& couple = list.couple[static_cast<std::size_t>(list.incoming[q])];
+            wrench.torque -= Vec3(couple[0], couple[1], couple[2]);
+        }
+    }
+    return wrench;
+}
+
+void add_wall_wrench(const GrainSystem& system, std::size_t k, Wrench& wrench) {
+    const WallContacts& walls = system.wall_contacts;
+    const auto at = std::lower_bound(walls.near.begin(), walls.near.end(), static_cast<std::int32_t>(k));
+    if (at == walls.near.end() || *at != static_cast<std::int32_t>(k)) return;
+    for (const WallContact& contact : walls.contacts[static_cast<std::size_t>(at - walls.near.begin())]) {
+        wrench.force += contact.force;
+        wrench.torque += contact.torque;
+    }
+}
+
+/// Acceleration of every block group: all its grains share it.
+std::vector<Vec3> block_accelerations(const GrainSystem& system) {
+    const Grains& g = system.grains;
+    std::vector<Vec3> force(system.groups.size(), Vec3::Zero());
+    std::vector<double> inertia(system.groups.size(), 0.0);
+    for (const std::int32_t place : positions_of_ids(g)) {
+        const auto k = static_cast<std::size_t>(place);
+        const auto group = static_cast<std::size_t>(g.group[k]);
+        if (system.groups[group].motion != Motion::block) continue;
+        Wrench wrench = contact_wrench(system, k);
+        add_wall_wrench(system, k, wrench);
+        force[group] += wrench.force + g.mass[k] * system.domain.gravity;
+        inertia[group] += 1.0 / g.mobility[k];
+    }
+    for (std::size_t q = 0; q < force.size(); ++q)
+        if (inertia[q] > 0.0) force[q] /= inertia[q];
+    return force;
+}
+
+bool has_block(const GrainSystem& system) {
+    return std::any_of(system.groups.begin(), system.groups.end(),
+                       [](const GrainGroup& g) { return g.motion == Motion::block; });
+}
+
+/// Ends the step of all grains with the forces of the last evaluation. `correct` is false when there was no step.
+void kick(GrainSystem& system, double dt, const FluidForcing* forcing, bool correct) {
+    Grains& g = system.grains;
+    const std::vector<Vec3> block = has_block(system) ? block_accelerations(system) : std::vector<Vec3>();
+    const bool verlet = correct && system.integrator == Integrator::velocity_verlet;
+    parallel_for(g.size(), [&](std::size_t k) {
+        const GrainGroup& group = system.groups[static_cast<std::size_t>(g.group[k])];
+        Wrench wrench = contact_wrench(system, k);
+        add_wall_wrench(system, k, wrench);
+        const Vec3 a = group.motion == Motion::block
+                           ? block[static_cast<std::size_t>(g.group[k])]
+                           : Vec3(g.mobility[k] * (wrench.force + g.mass[k] * system.domain.gravity));
+        Vec3 alpha = Vec3::Zero();
+        if (group.rotation && group.motion == Motion::free)
+            alpha = wrench.torque / sphere_inertia(g.mass[k], 2.0 * g.radius[k]);
+        if (verlet) {
+            const StepFunctions f = step_functions(forcing, k);
+            g.v[k] = predicted_velocity(g, k, f, dt) + (dt * f.phi2) * (a - g.a[k]);
+            g.omega[k] += (0.5 * dt) * (g.alpha[k] + alpha);
+        }
+        g.a[k] = a;
+        g.alpha[k] = alpha;
+    });
+}
+
+template <class FieldType>
+void reorder_if_used(FieldType& field, const std::vector<std::int32_t>& order) {
+    if (!field.empty()) reorder(field, order);
+}
+
+void reorder(FluidForcing& forcing, const std::vector<std::int32_t>& order) {
+    for (auto* field : {&forcing.phi0, &forcing.phi1, &forcing.phi2}) reorder_if_used(*field, order);
+    reorder_if_used(forcing.drive, order);
+    const std::vector<double> before = forcing.memory;
+    const std::size_t size = forcing.memory_size;
+    for (std::size_t k = 0; k < order.size(); ++k)
+        std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(order[k]) * size), size,
+                    forcing.memory.begin() + static_cast<std::ptrdiff_t>(k * size));
+}
+
+/// New lists for the present positions. The velocities in the records, which may be predicted ones, move along.
+void renew_lists(GrainSystem& system, FluidForcing* forcing) {
+    Neighbours& list = system.neighbours;
+    const std::vector<WallContact> on_walls = all_wall_contacts(system.wall_contacts);
+    const Field<GrainRecord> records = list.records;
+    const Field<SpinRecord> spins = list.spins;
+    const std::vector<std::int32_t> order = rebuild(list, system.grains, system.groups, system.domain,
+                                                    remembered_contacts(list, system.grains));
+    rebuild(system.wall_contacts, system.walls, system.grains, list.skin, system.time, on_walls);
+    system.listed_time = system.time;
+    if (forcing != nullptr) reorder(*forcing, order);
+    fill_records(system);
+    if (records.size() != list.records.size()) return; // the first list, or grains were added: nothing predicted yet
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const GrainRecord& record = records[static_cast<std::size_t>(order[k])];
+        const SpinRecord& spin = spins[static_cast<std::size_t>(order[k])];
+        write_record(list, k, system.grains.x[k], {record.vx, record.vy, record.vz}, {spin.x, spin.y, spin.z});
+    }
+}
+
+void evaluate_contacts(GrainSystem& system, double dt) {
+    evaluate_pairs(system.neighbours, system.contact, system.domain, dt);
+    evaluate_wall_contacts(system.wall_contacts, system.walls, system.contact, system.grains, system.neighbours,
+                           system.time, dt);
+}
+
+/// Sizes of the memory that the chosen laws need, and the skin of the neighbour list.
+void prepare_lists(GrainSystem& system) {
+    Neighbours& list = system.neighbours;
+    const auto history = [](const auto& laws) { return std::decay_t<decltype(laws.laws)>::value_type::history; };
+    list.history = std::visit(history, system.contact.contact) + std::visit(history, system.contact.rolling);
+    list.rolls = !std::holds_alternative<PairLaws<NoRolling>>(system.contact.rolling);
+    double smallest = std::numeric_limits<double>::infinity();
+    for (const double r : system.grains.radius) smallest = std::min(smallest, r);
+    list.skin = std::isfinite(smallest) ? skin_in_radii * smallest : 0.0;
+}
+
+void check_box(const GrainSystem& system) {
+    double largest = 0.0;
+    for (const double r : system.grains.radius) largest = std::max(largest, r);
+    const double reach = 2.0 * largest + system.neighbours.skin;
+    for (int c = 0; c < 3; ++c)
+        if (system.domain.periodic[static_cast<std::size_t>(c)] && system.domain.size[c] < 2.0 * reach)
+            throw InputError(fmt::format("domain.size: {} m along periodic {} is too short; grains of radius {} m need "
+                                         "at least {:.6g} m, or they would touch two images of each other",
+                                         system.domain.size[c], axis_names[static_cast<std::size_t>(c)], largest,
+                                         2.0 * reach));
+}
+
+} // namespace
+
+void start(GrainSystem& system, FluidForcing* forcing) {
+    const bool first = !system.started;
+    if (!first && system.neighbours.records.size() == system.grains.size() + 1) return;
+    prepare_lists(system);
+    if (contactless(system.contact)) { // no list: only the records' places are needed
+        system.neighbours.own.assign(system.grains.size() + 1, 0);
+        system.neighbours.incoming_begin.assign(system.grains.size() + 1, 0);
+        system.grains.x_listed = system.grains.x;
+        fill_records(system);
+    } else {
+        check_box(system);
+        renew_lists(system, forcing);
+    }
+    if (first) {
+        evaluate_contacts(system, 0.0);
+        kick(system, 0.0, forcing, false);
+    }
+    system.started = true;
+}
+
+void restore_lists(GrainSystem& system, const std::vector<RememberedContact>& pairs,
+                   const std::vector<WallContact>& walls) {
+    prepare_lists(system);
+    Grains& g = system.grains;
+    std::vector<Vec3> x(g.size()); // by id
+    for (std::size_t k = 0; k < g.size(); ++k) x[static_cast<std::size_t>(g.id[k])] = g.x[k];
+    if (contactless(system.contact)) {
+        system.neighbours.own.assign(g.size() + 1, 0);
+        system.neighbours.incoming_begin.assign(g.size() + 1, 0);
+    } else {
+        g.x = g.x_listed;
+        rebuild(system.neighbours, g, system.groups, system.domain, pairs);
+        rebuild(system.wall_contacts, system.walls, g, system.neighbours.skin, system.listed_time, walls);
+        for (std::size_t k = 0; k < g.size(); ++k) g.x[k] = x[static_cast<std::size_t>(g.id[k])];
+    }
+    fill_records(system);
+    system.started = true;
+}
+
+void advance_grains(GrainSystem& system, std::int64_t steps, double dt, FluidForcing* forcing) {
+    start(system, forcing);
+    for (std::int64_t s = 0; s < steps; ++s) {
+        const bool stale = drift(system, dt, forcing);
+        ++system.step;
+        system.time = dt * static_cast<double>(system.step);
+        if (stale) renew_lists(system, forcing);
+        evaluate_contacts(system, dt);
+        kick(system, dt, forcing, true);
+    }
+}
+
+std::vector<Vec3> contact_forces(const GrainSystem& system) {
+    std::vector<Vec3> force(system.grains.size());
+    for (std::size_t k = 0; k < force.size(); ++k) {
+        Wrench wrench = contact_wrench(system, k);
+        add_wall_wrench(system, k, wrench);
+        force[k] = wrench.force;
+    }
+    return force;
+}
+
+} // namespace plumb

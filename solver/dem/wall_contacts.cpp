@@ -1,0 +1,125 @@
+#include "dem/wall_contacts.hpp"
+
+#include "core/parallel.hpp"
+
+#include <algorithm>
+
+namespace plumb {
+
+namespace {
+
+Space<double> space(const Vec3& a) { return {a[0], a[1], a[2]}; }
+Vec3 vec(const Space<double>& a) { return {a.x, a.y, a.z}; }
+
+Space<double> remembered(const WallContact& contact, std::size_t first) {
+    return {contact.stretch[first], contact.stretch[first + 1], contact.stretch[first + 2]};
+}
+void remember(WallContact& contact, std::size_t first, const Space<double>& stretch) {
+    contact.stretch[first] = stretch.x;
+    contact.stretch[first + 1] = stretch.y;
+    contact.stretch[first + 2] = stretch.z;
+}
+
+/// Force and torque of one wall point, for one pair of laws. A wall is a body of infinite mass and radius.
+template <class Law, class RollingLawType>
+void apply_laws(WallContact& contact, const WallPoint& point, const Law& law, const RollingLawType& rolling,
+                const GrainRecord& grain, const SpinRecord& spin, const Vec3& wall_velocity, double dt) {
+    const Vec3 v(grain.vx, grain.vy, grain.vz), surface(spin.x, spin.y, spin.z); // surface = R omega
+    const Space<double> n = space(point.normal);
+    const double lever = point.distance / grain.radius;
+    const Contact<double> state{grain.radius - point.distance,
+                                n,
+                                space(v - wall_velocity) - lever * cross(space(surface), n),
+                                grain.inverse_mass,
+                                1.0 / grain.radius,
+                                dt};
+    Space<double> stretch = remembered(contact, 0);
+    const ContactForce<double> f = Law::force(state, law.parameters, stretch);
+    if constexpr (Law::history > 0) remember(contact, 0, stretch);
+    contact.force = vec(f.normal * n + f.tangential);
+    contact.torque = -point.distance * point.normal.cross(vec(f.tangential));
+    contact.overlap = state.overlap;
+    if constexpr (!std::is_same_v<RollingLawType, NoRolling>) {
+        const Vec3 omega = surface / grain.radius;
+        const double r = grain.radius;
+        const Rolling<double> turning{n,          space(omega - omega.dot(point.normal) * point.normal),
+                                      std::max(f.normal, 0.0), r, 2.5 * grain.inverse_mass / (r * r), dt};
+        Space<double> bend = remembered(contact, Law::history);
+        contact.torque += vec(RollingLawType::torque(turning, rolling.parameters, bend));
+        if constexpr (RollingLawType::history > 0) remember(contact, Law::history, bend);
+    }
+}
+
+/// Replaces the contacts of one grain by those of now, each taking over the memory of its forerunner.
+template <class Law, class RollingLawType>
+void update_grain(std::vector<WallContact>& contacts, const std::vector<WallBody>& walls, const PairLaws<Law>& laws,
+                  const PairLaws<RollingLawType>& rolling, const Grains& grains, const Neighbours& list,
+                  std::size_t place, double time, double dt) {
+    const std::vector<WallContact> before = contacts; // a handful at most
+    contacts.clear();
+    const GrainRecord& grain = list.records[place];
+    const Vec3 x(grain.x, grain.y, grain.z);
+    const auto material = static_cast<std::int32_t>(list.spins[place].material);
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+        const WallBody& wall = walls[w];
+        wall.touch(x, grain.radius, time, [&](const WallPoint& point) {
+            WallContact now{grains.id[place], static_cast<std::int32_t>(w), point.element};
+            for (const WallContact& old : before)
+                if (old.wall == now.wall && old.element == now.element) now.stretch = old.stretch;
+            apply_laws(now, point, laws.of(material, wall.material), rolling.of(material, wall.material), grain,
+                       list.spins[place], wall.velocity, dt);
+            contacts.push_back(now);
+        });
+    }
+}
+
+} // namespace
+
+std::vector<WallContact> all_wall_contacts(const WallContacts& near_walls) {
+    std::vector<WallContact> all;
+    for (const auto& contacts : near_walls.contacts) all.insert(all.end(), contacts.begin(), contacts.end());
+    std::stable_sort(all.begin(), all.end(),
+                     [](const WallContact& a, const WallContact& b) { return a.grain < b.grain; });
+    return all;
+}
+
+void rebuild(WallContacts& near_walls, const std::vector<WallBody>& walls, const Grains& grains, double skin,
+             double time, const std::vector<WallContact>& memory) {
+    near_walls.near.clear();
+    near_walls.contacts.clear();
+    if (walls.empty()) return;
+    for (std::size_t k = 0; k < grains.size(); ++k) {
+        bool close = false;
+        for (const WallBody& wall : walls)
+            wall.touch(grains.x[k], grains.radius[k] + skin, time, [&](const WallPoint&) { close = true; });
+        if (close) near_walls.near.push_back(static_cast<std::int32_t>(k));
+    }
+    near_walls.contacts.resize(near_walls.near.size());
+    const std::vector<std::int32_t> place = positions_of_ids(grains);
+    for (const WallContact& contact : memory) {
+        const auto at = std::lower_bound(near_walls.near.begin(), near_walls.near.end(),
+                                         place[static_cast<std::size_t>(contact.grain)]);
+        if (at != near_walls.near.end() && *at == place[static_cast<std::size_t>(contact.grain)])
+            near_walls.contacts[static_cast<std::size_t>(at - near_walls.near.begin())].push_back(contact);
+    }
+}
+
+void evaluate_wall_contacts(WallContacts& near_walls, const std::vector<WallBody>& walls, const ContactModel& model,
+                            const Grains& grains, const Neighbours& list, double time, double dt) {
+    std::visit(
+        [&](const auto& laws, const auto& rolling) {
+            using Law = typename std::decay_t<decltype(laws.laws)>::value_type;
+            if constexpr (!std::is_same_v<Law, NoContact>)
+                parallel_chunks(
+                    near_walls.near.size(),
+                    [&](std::size_t begin, std::size_t end) {
+                        for (std::size_t q = begin; q < end; ++q)
+                            update_grain(near_walls.contacts[q], walls, laws, rolling, grains, list,
+                                         static_cast<std::size_t>(near_walls.near[q]), time, dt);
+                    },
+                    64);
+        },
+        model.contact, model.rolling);
+}
+
+} // namespace plumb

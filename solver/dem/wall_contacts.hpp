@@ -1,0 +1,45 @@
+// Contacts between grains and walls.
+#pragma once
+
+#include "core/domain.hpp"
+#include "dem/contact_model.hpp"
+#include "dem/grains.hpp"
+#include "dem/neighbours.hpp"
+#include "dem/walls.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace plumb {
+
+/// One contact point of a grain with a wall, with its memory and its last force.
+struct WallContact {
+    std::int32_t grain;   // id
+    std::int32_t wall;    // index
+    std::int32_t element; // of the wall
+    std::array<double, 6> stretch{}; // tangential, then rolling
+    Vec3 force = Vec3::Zero();       // on the grain [N]
+    Vec3 torque = Vec3::Zero();      // on the grain about its centre [N m]
+    double overlap = 0.0;            // [m]
+};
+
+/// Grains near a wall, by place in the present order, and their contacts.
+struct WallContacts {
+    std::vector<std::int32_t> near;                 // places, ascending
+    std::vector<std::vector<WallContact>> contacts; // of near[q]
+};
+
+/// All contacts with a memory or a force, in order of grain id: for checkpoints and probes.
+std::vector<WallContact> all_wall_contacts(const WallContacts& walls);
+
+/// Finds the grains that may touch a wall before the neighbour list is rebuilt, keeping `memory`.
+void rebuild(WallContacts& near_walls, const std::vector<WallBody>& walls, const Grains& grains, double skin,
+             double time, const std::vector<WallContact>& memory);
+
+/// Forces of the walls on the grains near them, from the records of the sweep over pairs (positions and the velocities
+/// predicted for time `time`); the springs advance by dt.
+void evaluate_wall_contacts(WallContacts& near_walls, const std::vector<WallBody>& walls, const ContactModel& model,
+                            const Grains& grains, const Neighbours& list, double time, double dt);
+
+} // namespace plumb

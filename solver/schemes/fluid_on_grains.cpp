@@ -1,0 +1,252 @@
+#include "schemes/fluid_on_grains.hpp"
+
+#include "core/parallel.hpp"
+
+#include <algorithm>
+
+namespace plumb {
+
+namespace {
+
+// What a history force keeps per grain besides its exponentials: the slip before the step (x, y, z), the force at the
+// start of the step (x, y, z), and 1 once the grain has been seen.
+constexpr std::size_t history_extra = 7;
+
+// Share of the history force taken at the end of the step; 1/2 is second order.
+constexpr double theta = 0.5;
+
+/// Forcing of one grain before grains of a block share theirs.
+struct OneForcing {
+    double rate = 0.0;      // beta [1/s]
+    Vec3 other = Vec3::Zero(); // acceleration by all forces but drag [m/s2], contacts and gravity not included
+    Vec3 u = Vec3::Zero();  // fluid velocity at the middle of the step [m/s]
+    double re = 0.0;        // superficial, at the middle of the step
+    double eps = 1.0;
+};
+
+LocalFluid local_fluid(const FluidOnGrains& f, const Domain& domain, const Vec3& x, double t) {
+    LocalFluid local;
+    static_cast<FlowPoint&>(local) = std::visit([&](const auto& flow) { return flow(x, t); }, f.flow);
+    local.eps = porosity_at(f.porosity, domain.wrapped(x), domain);
+    local.density = f.density;
+    local.viscosity = f.viscosity;
+    return local;
+}
+
+/// Carries the history of one grain over the step that has just ended, and returns the force of the coming one that does
+/// not depend on its new velocity [N].
+Vec3 history_drive(const BassetKernel& kernel, double coefficient, std::span<double> memory, const Vec3& slip,
+                   const Vec3& slip_change_of_fluid) {
+    const auto states = memory.first(kernel.state_size());
+    double* extra = memory.data() + kernel.state_size();
+    Eigen::Map<Vec3> slip_before(extra), force_now(extra + 3);
+    if (extra[6] == 0.0) { // first seen: it enters with its slip
+        BassetKernel::add_jump(states, slip);
+        force_now.setZero(); // singular at this instant; felt from the end of the step on
+    } else {
+        const Vec3 change = slip - slip_before;
+        force_now = kernel.force_from_past(states, coefficient) + kernel.implicit_coefficient(coefficient) * change;
+        kernel.advance(states, change);
+    }
+    extra[6] = 1.0;
+    slip_before = slip;
+    return (1.0 - theta) * force_now +
+           theta * (kernel.force_from_past(states, coefficient) +
+                    kernel.implicit_coefficient(coefficient) * slip_change_of_fluid);
+}
+
+/// Sum of the forces that do not depend on the rate of drag [N].
+Vec3 other_forces(const FluidOnGrains& f, const LocalFluid& local, const LocalGrain& grain, const Vec3& gravity) {
+    Vec3 sum = Vec3::Zero();
+    for (const OtherForce& law : f.forces) sum += force_on_grain(law, local, grain, gravity);
+    return sum;
+}
+
+OneForcing forcing_of_grain(FluidOnGrains& f, const GrainSystem& system, const BassetKernel* kernel, std::size_t k,
+                            double dt) {
+    const Grains& g = system.grains;
+    const double d = 2.0 * g.radius[k], mobility = g.mobility[k];
+    const Vec3 v = g.v[k];
+    const LocalFluid local = local_fluid(f, system.domain, g.x[k] + (0.5 * dt) * v, system.time + 0.5 * dt);
+    OneForcing one;
+    one.u = local.u;
+    one.eps = local.eps;
+    Vec3 history = Vec3::Zero();
+    if (kernel != nullptr) {
+        const LocalFluid now = local_fluid(f, system.domain, g.x[k], system.time);
+        const Vec3 change_of_fluid = dt * (local.acceleration + local.gradient * (v - local.u)); // along the grain's path
+        history = history_drive(*kernel, basset_coefficient(f.density, f.viscosity, d),
+                                {f.forcing.memory.data() + k * f.forcing.memory_size, f.forcing.memory_size},
+                                now.u - v, change_of_fluid);
+    }
+    const auto rate = [&](double slip) {
+        return mobility * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip);
+    };
+    // Lift depends on the velocity: a first pass at the start of the step finds the velocity at its middle.
+    LocalGrain grain{d, v};
+    for (int pass = 0; pass < (f.forces.empty() ? 1 : 2); ++pass) {
+        one.other = mobility * (other_forces(f, local, grain, system.domain.gravity) + history);
+        const Vec3 acceleration = g.a[k] + one.other;
+        std::visit(
+            [&](const auto& exchange) {
+                one.rate = mid_step_rate(exchange, rate, v - local.u, acceleration, dt);
+                const StepWeights half = exchange(0.5 * one.rate * dt);
+                grain.velocity = local.u + half.phi0 * (v - local.u) + (0.5 * dt * half.phi1) * acceleration;
+            },
+            f.exchange);
+    }
+    one.re = f.density * d * local.eps * (grain.velocity - local.u).norm() / f.viscosity;
+    return one;
+}
+
+/// Grains of a block move as one: their rates and drives are averaged with their inertia.
+void share_in_blocks(const GrainSystem& system, std::vector<OneForcing>& all) {
+    const Grains& g = system.grains;
+    std::vector<double> inertia(system.groups.size(), 0.0);
+    std::vector<OneForcing> mean(system.groups.size());
+    const auto is_block = [&](std::size_t k) {
+        return system.groups[static_cast<std::size_t>(g.group[k])].motion == Motion::block;
+    };
+    for (const std::int32_t place : positions_of_ids(g)) {
+        const auto k = static_cast<std::size_t>(place);
+        if (!is_block(k)) continue;
+        const auto q = static_cast<std::size_t>(g.group[k]);
+        const double m = 1.0 / g.mobility[k];
+        inertia[q] += m;
+        mean[q].rate += m * all[k].rate;
+        mean[q].other += m * all[k].other;
+        mean[q].u += m * all[k].rate * all[k].u; // weighted with the drag it causes
+    }
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (!is_block(k)) continue;
+        const auto q = static_cast<std::size_t>(g.group[k]);
+        all[k].u = mean[q].rate > 0.0 ? Vec3(mean[q].u / mean[q].rate) : Vec3::Zero();
+        all[k].rate = mean[q].rate / inertia[q];
+        all[k].other = mean[q].other / inertia[q];
+    }
+}
+
+/// Step weights and drive of grain k, and the drag and other forces it will feel on average.
+void write_forcing(FluidOnGrains& f, const GrainSystem& system, std::size_t k, const OneForcing& own,
+                   const OneForcing& shared, double dt) {
+    const Grains& g = system.grains;
+    const StepWeights w = std::visit([&](const auto& e) { return e(shared.rate * dt); }, f.exchange);
+    f.forcing.phi0[k] = w.phi0;
+    f.forcing.phi1[k] = w.phi1;
+    f.forcing.phi2[k] = w.phi2;
+    f.forcing.drive[k] = shared.other + shared.rate * shared.u;
+    const Vec3 mean_velocity = w.phi1 * g.v[k] + (dt * w.phi2) * (g.a[k] + f.forcing.drive[k]);
+    const auto id = static_cast<std::size_t>(g.id[k]);
+    const double inertia = 1.0 / g.mobility[k];
+    f.last_drag[id] = (own.rate * inertia) * (own.u - mean_velocity);
+    // The added mass times the acceleration is missing until the new velocity is known.
+    f.last_fluid_force[id] = f.last_drag[id] + inertia * own.other + (inertia - g.mass[k]) * g.v[k] / dt;
+}
+
+/// A fixed grain does not respond, but it feels the fluid: the forces are those at its given velocity.
+OneForcing write_fixed(FluidOnGrains& f, const GrainSystem& system, std::size_t k, double dt) {
+    const Grains& g = system.grains;
+    f.forcing.phi0[k] = f.forcing.phi1[k] = 1.0;
+    f.forcing.phi2[k] = 0.5;
+    f.forcing.drive[k].setZero();
+    const double d = 2.0 * g.radius[k];
+    const LocalFluid local = local_fluid(f, system.domain, g.x[k] + (0.5 * dt) * g.v[k], system.time + 0.5 * dt);
+    const Vec3 slip = local.u - g.v[k];
+    const auto id = static_cast<std::size_t>(g.id[k]);
+    f.last_drag[id] = drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip.norm()) * slip;
+    f.last_fluid_force[id] = f.last_drag[id] + other_forces(f, local, {d, g.v[k]}, system.domain.gravity);
+    OneForcing one;
+    one.re = f.density * d * local.eps * slip.norm() / f.viscosity;
+    one.eps = local.eps;
+    return one;
+}
+
+void count_range(FluidOnGrains& f, const std::vector<OneForcing>& all) {
+    const DragRange& range = drag_range(f.drag);
+    for (const OneForcing& one : all) {
+        f.range_use.re_min = std::min(f.range_use.re_min, one.re);
+        f.range_use.re_max = std::max(f.range_use.re_max, one.re);
+        ++(within(range, one.re, one.eps) ? f.range_use.inside : f.range_use.outside);
+    }
+}
+
+} // namespace
+
+FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling) {
+    fluid.choice("method", {"prescribed"});
+    coupling.choice("direction", {"one_way"});
+    FluidOnGrains f{fluid.number("density", positive),
+                    fluid.number("viscosity", positive),
+                    make_family<PrescribedFlow>(fluid.law("flow")),
+                    coupling.has("porosity") ? make_family<PrescribedPorosity>(coupling.law("porosity"))
+                                             : PrescribedPorosity{},
+                    make_family<DragLaw>(coupling.law("drag")),
+                    {},
+                    std::nullopt,
+                    make_family<Exchange>(coupling.law("exchange")),
+                    {},
+                    {},
+                    {},
+                    {}};
+    for (const std::string& name : coupling.texts("forces")) {
+        if (name == "basset")
+            f.history = make_family<HistoryForce>(coupling.law("basset"));
+        else {
+            Table law(toml::table{{"law", name}}, coupling.path() + ".forces", coupling.file());
+            f.forces.push_back(make_family<OtherForce>(law));
+        }
+    }
+    return f;
+}
+
+void set_inertia(const FluidOnGrains& fluid, GrainSystem& system, double dt) {
+    Grains& g = system.grains;
+    std::optional<BassetKernel> kernel;
+    if (fluid.history) kernel = history_kernel(*fluid.history, dt);
+    for (std::size_t k = 0; k < g.size(); ++k) {
+        if (g.mobility[k] == 0.0) continue; // fixed
+        const double d = 2.0 * g.radius[k];
+        double inertia = g.mass[k];
+        for (const OtherForce& law : fluid.forces) inertia += added_mass(law, fluid.density, d);
+        if (kernel)
+            inertia += theta * dt *
+                       kernel->implicit_coefficient(basset_coefficient(fluid.density, fluid.viscosity, d));
+        g.mobility[k] = 1.0 / inertia;
+    }
+}
+
+void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt) {
+    const Grains& g = system.grains;
+    const std::size_t n = g.size();
+    std::optional<BassetKernel> kernel;
+    if (fluid.history) kernel = history_kernel(*fluid.history, dt);
+    FluidForcing& forcing = fluid.forcing;
+    forcing.drive.resize(n);
+    for (auto* field : {&forcing.phi0, &forcing.phi1, &forcing.phi2}) field->resize(n);
+    forcing.memory_size = kernel ? kernel->state_size() + history_extra : 0;
+    forcing.memory.resize(n * forcing.memory_size, 0.0); // grains that were added stand at the end
+    fluid.last_drag.resize(n);
+    fluid.last_fluid_force.resize(n);
+    std::vector<OneForcing> own(n);
+    parallel_for(n, [&](std::size_t k) {
+        own[k] = g.mobility[k] == 0.0 ? write_fixed(fluid, system, k, dt)
+                                      : forcing_of_grain(fluid, system, kernel ? &*kernel : nullptr, k, dt);
+    });
+    std::vector<OneForcing> shared = own;
+    share_in_blocks(system, shared);
+    parallel_for(n, [&](std::size_t k) {
+        if (g.mobility[k] != 0.0) write_forcing(fluid, system, k, own[k], shared[k], dt);
+    });
+    count_range(fluid, own);
+}
+
+void complete_fluid_forces(FluidOnGrains& fluid, const GrainSystem& system, double dt) {
+    const Grains& g = system.grains;
+    parallel_for(g.size(), [&](std::size_t k) {
+        if (g.mobility[k] == 0.0) return;
+        const double added = 1.0 / g.mobility[k] - g.mass[k];
+        fluid.last_fluid_force[static_cast<std::size_t>(g.id[k])] -= (added / dt) * g.v[k];
+    });
+}
+
+} // namespace plumb

@@ -1,0 +1,28 @@
+// A scene made ready to run, and the one verb that moves it forward.
+#pragma once
+
+#include "core/scene.hpp"
+#include "dem/grain_system.hpp"
+#include "schemes/fluid_on_grains.hpp"
+#include "schemes/stable_step.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace plumb {
+
+struct Simulation {
+    GrainSystem grains;
+    std::optional<FluidOnGrains> fluid; // a prescribed fluid; none without a [fluid] table
+    Timing timing;                      // steps, outputs and limits, fixed for the whole run
+};
+
+/// Builds everything `scene` describes except the probes, which stay to be read from scene.root.
+/// Throws InputError for whatever cannot be meant.
+Simulation make_simulation(Scene& scene);
+
+/// Advances by `steps` steps of timing.dt; injections due at the start of a step happen before it.
+/// Throws Diverged naming the step limit that is most likely broken.
+void advance(Simulation& simulation, std::int64_t steps);
+
+} // namespace plumb

@@ -1,0 +1,101 @@
+#include "schemes/stable_step.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace plumb {
+
+namespace {
+
+// Steps per contact: velocity Verlet then keeps the restitution of a damped linear contact within 1 %, and stays a
+// factor of six inside its stability bound 2/omega = (2/pi) t_c (a grain with several contacts is stiffer).
+constexpr double steps_per_contact = 20.0;
+
+/// Speed at which grains may meet [m/s]: only Hertzian contacts ask for it.
+double impact_speed(const GrainSystem& system) {
+    double fastest = 0.0;
+    for (const Vec3& v : system.grains.v) fastest = std::max(fastest, v.norm());
+    for (const WallBody& wall : system.walls) fastest = std::max(fastest, wall.velocity.norm());
+    const double fall = std::sqrt(2.0 * system.domain.gravity.cwiseAbs().dot(system.domain.size));
+    return 2.0 * fastest + fall;
+}
+
+/// Lightest and smallest grain of every group: those with the shortest contacts.
+struct Extremes {
+    double mass = std::numeric_limits<double>::infinity();
+    double radius = std::numeric_limits<double>::infinity();
+};
+
+/// Least number of whole steps that are not longer than `limit`.
+std::int64_t whole_steps(double interval, double limit) {
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(interval / limit * (1.0 - 1e-12))));
+}
+
+/// interval/dt when it is whole within rounding; InputError otherwise.
+std::int64_t whole_ratio(Table& time, std::string_view key, double interval, double dt, std::string_view of) {
+    const double ratio = interval / dt;
+    if (std::abs(ratio - std::nearbyint(ratio)) > 1e-9 * ratio || ratio < 0.5)
+        time.fail(key, fmt::format("{} s is not a whole number of {} of {} s", interval, of, dt));
+    return static_cast<std::int64_t>(std::nearbyint(ratio));
+}
+
+} // namespace
+
+std::vector<StepLimit> grain_limits(const GrainSystem& system) {
+    std::vector<Extremes> least(system.groups.size());
+    for (std::size_t k = 0; k < system.grains.size(); ++k) {
+        Extremes& e = least[static_cast<std::size_t>(system.grains.group[k])];
+        e.mass = std::min(e.mass, system.grains.mass[k]);
+        e.radius = std::min(e.radius, system.grains.radius[k]);
+    }
+    const double speed = impact_speed(system);
+    const std::size_t groups = system.groups.size(), materials = groups + system.walls.size();
+    double shortest = std::numeric_limits<double>::infinity();
+    const auto shorten = [&](const auto& pairs) {
+        for (std::size_t a = 0; a < groups; ++a)
+            for (std::size_t b = a; b < materials; ++b) {
+                if (!std::isfinite(least[a].mass) || (b < groups && !std::isfinite(least[b].mass))) continue;
+                const bool wall = b >= groups;
+                const double inverse_mass = 1.0 / least[a].mass + (wall ? 0.0 : 1.0 / least[b].mass);
+                const double inverse_radius = 1.0 / least[a].radius + (wall ? 0.0 : 1.0 / least[b].radius);
+                const auto& law = pairs.of(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
+                shortest = std::min(shortest, law.contact_time(inverse_mass, inverse_radius, speed));
+            }
+    };
+    std::visit(shorten, system.contact.contact);
+    return {{"contact", shortest / steps_per_contact, "shortest contact time / 20"}};
+}
+
+Timing timing(Table& time, std::vector<StepLimit> limits) {
+    Timing t;
+    t.end = time.number("end", positive);
+    t.output_interval = time.number("output_interval", positive);
+    t.snapshots = time.has("snapshots") && time.flag("snapshots");
+    t.outputs = whole_ratio(time, "end", t.end, t.output_interval, "output intervals");
+    if (time.has("safety")) {
+        Table safety = time.table("safety");
+        for (StepLimit& limit : limits)
+            if (safety.has(limit.name)) limit.seconds *= safety.number(limit.name, positive);
+    }
+    t.limits = std::move(limits);
+    const auto least = std::min_element(t.limits.begin(), t.limits.end(), [](const StepLimit& a, const StepLimit& b) {
+        return a.seconds < b.seconds;
+    });
+    if (time.type("step") == toml::node_type::string) {
+        time.choice("step", {"auto"});
+        const double limit = least == t.limits.end() ? std::numeric_limits<double>::infinity() : least->seconds;
+        t.steps_per_output = whole_steps(t.output_interval, limit);
+        t.dt = t.output_interval / static_cast<double>(t.steps_per_output);
+        t.ruling = limit < t.output_interval ? least->name : "output_interval";
+    } else {
+        t.dt = time.number("step", positive);
+        t.steps_per_output = whole_ratio(time, "output_interval", t.output_interval, t.dt, "steps");
+        t.ruling = "given";
+    }
+    return t;
+}
+
+} // namespace plumb
