@@ -1,0 +1,110 @@
+"""case.toml: what is read, and one clear line for each mistake."""
+
+import pytest
+from plumb_reports.__main__ import main
+from plumb_reports.case_file import read_case
+from plumb_reports.strict import CaseError
+
+CHECK = r'\[\[check\]\]\nid = "velocity".*?\n\n'
+
+
+def test_the_fake_case(case):
+    read = read_case(case.folder)
+    assert read.name == "relaxation"
+    assert [v.name for v in read.variants] == ["default"]
+    assert read.sweep.values_of("quick") == (0.05, 0.025, 0.0125)
+    assert len(read.sweep.values_of("full")) == 5
+    velocity = read.check("velocity")
+    assert velocity.order == (1.8, 2.2) and velocity.bound("quick") == 2e-3 and velocity.bound("campaign") == 1e-4
+    assert read.check("mean").tiers == ("quick",)
+    assert read.check("terminal").tiers == ("quick",)  # it has no bound for the full tier
+    assert read.must_fail[1].value == 0.0125
+
+
+def test_variants_and_campaign(case):
+    case.edit("case.toml", "quick = 3", "quick = 3\ncampaign = [0.001]")
+    case.append("case.toml", '[[variant]]\nname = "a"\nset = {"fake.tau" = 0.1}\n'
+                '[[variant]]\nname = "b"\nset = {"time.step" = 0.01}\nsweep = false\n')
+    case.edit("case.toml", 'why = "The trap', 'variants = ["a"]\nwhy = "The trap')
+    read = read_case(case.folder)
+    assert read.values_of(read.variant("a"), "campaign")[-1] == 0.001
+    assert read.values_of(read.variant("b"), "full") == (None,)
+    assert read.check("terminal").variants == ("a", "b")
+
+
+MISTAKES = [
+    ('summary = ".*?"', "", "'summary' is missing"),
+    ('summary = ".*?"', "summary = 3", "'summary' must be a non-empty string"),
+    ('reference = "analytic"', 'reference = "guessed"', "'reference' is 'guessed'"),
+    ('area = "fake"', 'area = "fake"\ncolour = "red"', "'colour' is unknown"),
+    ('area = "fake"', "area = ", "is not TOML"),
+    ("quick = 3", "quick = 9", "'quick' must be a whole number"),
+    ("quick = 3", "quick = 2", "'order' needs at least 3 sweep values"),
+    ("quick = 3", "quick = true", "'quick' must be a whole number"),
+    ("quick = 3", "fine = 3", "'fine' is unknown"),
+    (r"values = \[0.05, 0.025", "values = [0.05, 0.05", "'values' must run from coarse to fine"),
+    (r"values = \[0.05", "values = [nan", "'values' must be a list of finite numbers"),
+    (r"0.003125\]", "-1.0]", "'order' needs positive sweep values"),
+    (r"\[sweep\].*?quick = 3", "", "'order' needs a [sweep]"),
+    ('why = "The trap.*?"', "", "'why' is missing"),
+    ('why = "The trap.*?"', 'why = " "', "'why' must be a non-empty string"),
+    ('id = "terminal"', 'id = "velocity"', "'velocity' is used twice"),
+    ('id = "terminal"', 'id = "a/b"', "'id' is 'a/b'"),
+    ('metric = "relative_l2"', 'metric = "l2"', "'metric' is 'l2'"),
+    ("finest_quick = 2e-3", "finest = 2e-3", "'finest' is unknown"),
+    ("finest_quick = 2e-3", "finest_quick = inf", "'finest_quick' must be a finite number"),
+    ("finest_quick = 2e-3", "finest_quick = -1", "'finest_quick' must not be negative"),
+    ("finest_quick = 2.0", "", "'finest_quick' is missing"),
+    (r"order = \[1.8, 2.2\]", "order = [2.2, 1.8]", "'order' must be [lower, upper]"),
+    (r"order = \[1.8, 2.2\]", "order = [2.0]", "'order' must have 2 entries"),
+    (r"range = \[1.9, 2.0\]", "finest_quick = 1.0", "the metric \"value\" belong together"),
+    ('metric = "value"', 'metric = "final_relative"', "the metric \"value\" belong together"),
+    (r'metric = "value"\nwindow = \[0.4, 0.5\]\nrange = \[1.9, 2.0\]',
+     'metric = "mean_relative"\nfinest_quick = 1.0', "'window' is missing"),
+    (r'tiers = \["quick"\]', 'tiers = ["quick", "nightly"]', "'tiers' names 'nightly'"),
+    ("finest_quick = 2.0", 'finest_quick = 2.0\ntiers = ["full"]', "'tiers' names 'full'"),
+    ("finest_quick = 2.0", 'finest_quick = 2.0\nvariants = ["other"]', "'variants' names 'other'"),
+    ("finest_quick = 2.0", 'finest_quick = 2.0\nnot_met = {accepted = 3.0}', "'evidence' is missing"),
+    ("finest_quick = 2e-3", 'finest_quick = 2e-3\nnot_met = {evidence = "e", accepted = 3.0}', "accepts one number"),
+    (r"\[\[must_fail\]\].*", "", "'must_fail' is missing"),
+    (r"\[\[check\]\].*", "", "'check' is missing"),
+    ('breaks = "velocity"\nvalue', 'breaks = "speed"\nvalue', "'breaks' is 'speed'"),
+    (r'set = \{"fake.gain" = 1.1\}', "", "'set' is missing"),
+    (r'set = \{"fake.gain" = 1.1\}', "set = {}", "'set' must be a non-empty table"),
+    ("value = 0.0125", "value = true", "'value' must be a finite number"),
+    ("value = 0.0125", 'variant = "other"', "'variant' is 'other'"),
+    (r"\[sweep\]", '[[variant]]\nname = "a"\nset = {"time.step" = 1.0}\n\n[sweep]', "sets the sweep parameter"),
+    (r"\[sweep\]", '[[variant]]\nname = "a"\nset = {"fake.tau" = 1.0}\nsweep = false\n\n[sweep]', "has sweep = false"),
+    (r"\[sweep\]", "[[figure]]\nx = \"log\"\n\n[sweep]", "'quantity' is missing"),
+    (r"\[sweep\]", "[[sweep]]", "'sweep' must be a table"),
+]
+
+
+@pytest.mark.parametrize("pattern, replacement, message", MISTAKES)
+def test_mistakes(case, pattern, replacement, message):
+    case.edit("case.toml", pattern, replacement)
+    with pytest.raises(CaseError) as caught:
+        read_case(case.folder)
+    text = str(caught.value)
+    assert message in text
+    assert str(case.folder / "case.toml") in text
+    assert "\n" not in text
+
+
+@pytest.mark.parametrize("name", ["scene.toml", "case.toml", "reference.py", "README.md"])
+def test_missing_files(case, name):
+    (case.folder / name).unlink()
+    with pytest.raises(CaseError, match="is missing"):
+        read_case(case.folder)
+
+
+def test_exit_code_and_line(case, build, capsys):
+    case.edit("case.toml", 'why = "The trap.*?"', "")
+    solver = case.folder.parents[2] / "none"
+    arguments = ["judge", str(case.folder), "--tier", "quick", "--build", str(build), "--plumb"]
+    assert main([*arguments, __file__.replace("test_case_file", "fake_solver")]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and "[[check]] 'velocity': key 'why' is missing" in error
+    assert main([*arguments, str(solver)]) == 2
+    assert "is not a program" in capsys.readouterr().err
+    assert not build.exists()
