@@ -25,7 +25,8 @@ struct Domain {
         for (Eigen::Index c = 0; c < 3; ++c)
             if (periodic[static_cast<std::size_t>(c)]) {
                 x[c] -= size[c] * std::floor(x[c] / size[c]);
-                if (x[c] >= size[c]) x[c] = 0.0; // a tiny negative x rounds to the far side, which is the near one
+                // The product is rounded, so the difference may end up just outside: the far side is the near one.
+                if (x[c] < 0.0 || x[c] >= size[c]) x[c] = 0.0;
             }
         return x;
     }

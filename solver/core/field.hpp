@@ -1,6 +1,8 @@
 // Storage of one field: contiguous, aligned to a cache line so that a record never straddles two.
 #pragma once
 
+#include <sys/mman.h>
+
 #include <cstddef>
 #include <new>
 #include <vector>
@@ -9,7 +11,10 @@ namespace plumb {
 
 inline constexpr std::size_t cache_line = 64; // [bytes] on every x86-64 machine
 
-/// Allocator for std::vector that aligns to a cache line.
+inline constexpr std::size_t huge_page = std::size_t{1} << 21U; // [bytes]
+
+/// Allocator for std::vector that aligns to a cache line. Large fields ask for huge pages: the sweep over pairs reads
+/// records in random order, and with small pages it would wait for address translation.
 template <class T>
 struct CacheAligned {
     using value_type = T;
@@ -17,9 +22,15 @@ struct CacheAligned {
     template <class U>
     CacheAligned(const CacheAligned<U>& /*other*/) {}
     T* allocate(std::size_t n) {
-        return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{cache_line}));
+        const std::size_t bytes = n * sizeof(T);
+        void* p = ::operator new (bytes, alignment(n));
+        if (bytes >= huge_page) madvise(p, bytes, MADV_HUGEPAGE); // advice only: a refusal changes nothing
+        return static_cast<T*>(p);
     }
-    void deallocate(T* p, std::size_t /*n*/) noexcept { ::operator delete (p, std::align_val_t{cache_line}); }
+    void deallocate(T* p, std::size_t n) noexcept { ::operator delete (p, alignment(n)); }
+    static std::align_val_t alignment(std::size_t n) {
+        return std::align_val_t{n * sizeof(T) >= huge_page ? huge_page : cache_line};
+    }
     friend bool operator==(const CacheAligned& /*a*/, const CacheAligned& /*b*/) { return true; }
 };
 

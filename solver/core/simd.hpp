@@ -6,6 +6,10 @@
 #include <cstdint>
 #include <type_traits>
 
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
+
 namespace plumb {
 
 inline constexpr int pack_width = 8;
@@ -25,9 +29,13 @@ inline T broadcast(double x) {
 
 inline double square_root(double x) { return std::sqrt(x); }
 inline Pack square_root(Pack x) {
+#ifdef __AVX512F__ // the compiler makes two halves of the loop below
+    return _mm512_maskz_sqrt_pd(0xff, x); // the plain one alarms g++ 12 (uninitialised __Y)
+#else
     Pack r;
     for (int lane = 0; lane < pack_width; ++lane) r[lane] = std::sqrt(x[lane]);
     return r;
+#endif
 }
 
 inline double select(bool m, double a, double b) { return m ? a : b; }
@@ -44,9 +52,23 @@ inline T smaller(T a, T b) {
 
 inline bool any(bool m) { return m; }
 inline bool any(PackMask m) {
+#ifdef __AVX512DQ__ // one instruction; the loop below is not recognised as such
+    return _mm512_movepi64_mask(reinterpret_cast<__m512i>(m)) != 0;
+#else
     std::int64_t bits = 0;
     for (int lane = 0; lane < pack_width; ++lane) bits |= m[lane];
     return bits != 0;
+#endif
+}
+
+/// Three numbers of space in a register of four; the fourth lane is 0.
+using HalfPack [[gnu::vector_size(32)]] = double;
+
+[[gnu::always_inline]] inline HalfPack load3(const double* at) { return HalfPack{at[0], at[1], at[2], 0.0}; }
+[[gnu::always_inline]] inline void store3(double* at, HalfPack a) { at[0] = a[0], at[1] = a[1], at[2] = a[2]; }
+[[gnu::always_inline]] inline double dot3(HalfPack a, HalfPack b) {
+    const HalfPack c = a * b;
+    return c[0] + c[1] + c[2];
 }
 
 /// A vector of space whose components are doubles or packs.
@@ -72,7 +94,7 @@ inline Space<T> select(MaskOf<T> m, const Space<T>& a, const Space<T>& b) {
 }
 
 /// Transposes eight records of eight doubles: r[k][c] becomes r[c][k].
-inline void transpose(Pack (&r)[8]) {
+[[gnu::always_inline]] inline void transpose(Pack (&r)[8]) {
     Pack a[8], b[8];
     for (int k = 0; k < 8; k += 2) {
         a[k] = __builtin_shufflevector(r[k], r[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);

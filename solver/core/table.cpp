@@ -18,6 +18,8 @@ std::string shown(const toml::node& node) {
     std::ostringstream out;
     if (node.is_table())
         out << "a table";
+    else if (node.is_array())
+        out << "an array of " << node.as_array()->size();
     else
         out << toml::node_view<const toml::node>(node);
     return out.str();
@@ -69,7 +71,7 @@ const toml::node& Table::required(std::string_view key, std::string_view expecte
 
 double Table::checked(std::string_view key, const toml::node& node, const Range& range) const {
     if (!node.is_number()) fail(key, fmt::format("{} is not a number", shown(node)));
-    const double x = *node.value<double>();
+    const double x = node.is_integer() ? static_cast<double>(*node.value<std::int64_t>()) : *node.value<double>();
     if (!std::isfinite(x)) fail(key, fmt::format("{} is not finite", x));
     if (!range.contains(x)) fail(key, fmt::format("{} is outside the allowed range {}", x, range.text()));
     return x;

@@ -73,7 +73,8 @@ double mid_step_rate(const ExchangeLaw& exchange, const Rate& rate, const Vec3& 
     for (int k = 0; k < ExchangeLaw::most_iterations; ++k) {
         const StepWeights half = exchange(0.5 * beta * dt);
         const double found = rate((half.phi0 * slip + (0.5 * dt * half.phi1) * g).norm());
-        const double next = ExchangeLaw::most_iterations == 1 ? found : std::sqrt(beta * found);
+        // A law without a linear part starts from rest with beta = 0, which the mean would never leave.
+        const double next = ExchangeLaw::most_iterations == 1 || beta == 0.0 ? found : std::sqrt(beta * found);
         const bool settled = std::abs(next - beta) <= tolerance * beta;
         beta = next;
         if (settled) break;

@@ -1,7 +1,7 @@
 // The [grains] tables, from keys to grains at rest or in motion.
 #include "dem/arrange.hpp"
 
-#include "core/errors.hpp"
+#include "core/sphere.hpp"
 
 #include <fmt/format.h>
 
@@ -85,10 +85,12 @@ std::vector<Vec3> drawn_velocities(const VelocityLaw& law, const std::vector<dou
     if (!std::holds_alternative<MaxwellVelocity>(law)) return v;
     for (int pass = 0; pass < 2; ++pass) { // the second pass removes the round-off that the first one leaves
         Vec3 momentum = Vec3::Zero();
-        double mass = 0.0; // in units of density, which the group shares
-        for (std::size_t i = 0; i < v.size(); ++i)
-            momentum += sphere_volume(radius[i]) * v[i], mass += sphere_volume(radius[i]);
-        for (Vec3& each : v) each -= momentum / mass;
+        double volume = 0.0; // stands for mass: the group shares its density
+        for (std::size_t i = 0; i < v.size(); ++i) {
+            momentum += sphere_volume(2.0 * radius[i]) * v[i];
+            volume += sphere_volume(2.0 * radius[i]);
+        }
+        for (Vec3& each : v) each -= momentum / volume;
     }
     return v;
 }

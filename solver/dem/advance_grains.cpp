@@ -14,8 +14,8 @@ namespace plumb {
 
 namespace {
 
-// Skin of the neighbour list in radii of the smallest grain: a wider one is rebuilt less often but holds more pairs that
-// do not touch (measured in solver/benchmarks).
+// Skin of the neighbour list in radii of the smallest grain: a wider one is rebuilt less often but holds more pairs
+// that do not touch (measured in solver/benchmarks).
 constexpr double skin_in_radii = 0.1;
 constexpr double far_away = 1e30; // [m] position of the record that pads the list; it touches nothing
 
@@ -33,12 +33,11 @@ std::vector<double> inverse_contact_masses(const GrainSystem& system) {
     return inverse;
 }
 
-void write_record(Neighbours& list, std::size_t k, const Vec3& x, const Vec3& v, const Vec3& surface) {
-    GrainRecord& record = list.records[k];
-    record.x = x[0], record.y = x[1], record.z = x[2];
-    record.vx = v[0], record.vy = v[1], record.vz = v[2];
-    SpinRecord& spin = list.spins[k];
-    spin.x = surface[0], spin.y = surface[1], spin.z = surface[2];
+[[gnu::always_inline]] inline void write_record(Neighbours& list, std::size_t k, HalfPack x, HalfPack v,
+                                                HalfPack surface) {
+    store3(&list.records[k].x, x);
+    store3(&list.records[k].vx, v);
+    store3(&list.spins[k].x, surface);
 }
 
 /// Records of all grains in the present order; positions and velocities are those of the present state.
@@ -52,25 +51,26 @@ void fill_records(GrainSystem& system) {
         list.records[k].radius = g.radius[k];
         list.records[k].inverse_mass = inverse_mass[k];
         list.spins[k].material = g.group[k];
-        write_record(list, k, g.x[k], g.v[k], g.radius[k] * g.omega[k]);
+        write_record(list, k, load3(g.x[k].data()), load3(g.v[k].data()), g.radius[k] * load3(g.omega[k].data()));
     }
-    list.records[g.size()] = {far_away, far_away, far_away, 1.0, 0.0, 0.0, 0.0, 1.0};
+    list.records[g.size()] = {far_away, far_away, far_away, -1.0, 0.0, 0.0, 0.0, 1.0};
     list.spins[g.size()] = {0.0, 0.0, 0.0, 0.0};
 }
 
 /// The step functions of one grain: those of the fluid exchange, or plain velocity Verlet without a fluid.
 struct StepFunctions {
     double phi0 = 1.0, phi1 = 1.0, phi2 = 0.5;
-    Vec3 drive = Vec3::Zero();
+    HalfPack drive{};
 };
-StepFunctions step_functions(const FluidForcing* forcing, std::size_t k) {
+[[gnu::always_inline]] inline StepFunctions step_functions(const FluidForcing* forcing, std::size_t k) {
     if (forcing == nullptr) return {};
-    return {forcing->phi0[k], forcing->phi1[k], forcing->phi2[k], forcing->drive[k]};
+    return {forcing->phi0[k], forcing->phi1[k], forcing->phi2[k], load3(forcing->drive[k].data())};
 }
 
 /// Velocity at the end of the step if the contacts stayed as they are; the contacts of the new positions see this one.
-Vec3 predicted_velocity(const Grains& g, std::size_t k, const StepFunctions& f, double dt) {
-    return f.phi0 * g.v[k] + (dt * f.phi1) * (g.a[k] + f.drive);
+[[gnu::always_inline]] inline HalfPack predicted_velocity(const Grains& g, std::size_t k, const StepFunctions& f,
+                                                          double dt) {
+    return f.phi0 * load3(g.v[k].data()) + (dt * f.phi1) * (load3(g.a[k].data()) + f.drive);
 }
 
 [[noreturn]] void report_divergence(const GrainSystem& system, std::size_t k, double dt, double moved) {
@@ -83,83 +83,56 @@ Vec3 predicted_velocity(const Grains& g, std::size_t k, const StepFunctions& f, 
 }
 
 /// Moves grain k to the end of the step and writes its record. Returns the distance squared moved in this step.
-double drift_grain(GrainSystem& system, std::size_t k, double dt, const FluidForcing* forcing) {
+[[gnu::always_inline]] inline double drift_grain(GrainSystem& system, std::size_t k, double dt,
+                                                 const FluidForcing* forcing) {
     Grains& g = system.grains;
     const StepFunctions f = step_functions(forcing, k);
-    const Vec3 predicted = predicted_velocity(g, k, f, dt);
-    const Vec3 omega = g.omega[k] + dt * g.alpha[k];
-    Vec3 moved;
+    const HalfPack predicted = predicted_velocity(g, k, f, dt);
+    const HalfPack omega = load3(g.omega[k].data()) + dt * load3(g.alpha[k].data());
+    HalfPack moved;
     if (system.integrator == Integrator::velocity_verlet) {
-        moved = (dt * f.phi1) * g.v[k] + (dt * dt * f.phi2) * (g.a[k] + f.drive);
+        moved = (dt * f.phi1) * load3(g.v[k].data()) + (dt * dt * f.phi2) * (load3(g.a[k].data()) + f.drive);
     } else {
-        g.v[k] = predicted;
-        g.omega[k] = omega;
+        store3(g.v[k].data(), predicted);
+        store3(g.omega[k].data(), omega);
         moved = dt * predicted;
     }
-    g.x[k] += moved;
-    write_record(system.neighbours, k, g.x[k], predicted, g.radius[k] * omega);
-    return moved.squaredNorm();
+    const HalfPack x = load3(g.x[k].data()) + moved;
+    store3(g.x[k].data(), x);
+    write_record(system.neighbours, k, x, predicted, g.radius[k] * omega);
+    return dot3(moved, moved);
 }
 
-/// Drifts all grains; returns true when the neighbour list no longer holds.
-bool drift(GrainSystem& system, double dt, const FluidForcing* forcing) {
-    Grains& g = system.grains;
-    const bool collide = !contactless(system.contact);
-    double fastest_wall = 0.0;
-    for (const WallBody& wall : system.walls) fastest_wall = std::max(fastest_wall, wall.velocity.norm());
-    const double since = dt * static_cast<double>(system.step + 1) - system.listed_time;
-    const double allowed = 0.5 * system.neighbours.skin - fastest_wall * since;
-    const double allowed_sq = allowed > 0.0 ? allowed * allowed : 0.0;
-    std::vector<std::uint8_t> left((g.size() + parallel_chunk - 1) / parallel_chunk, 0);
-    parallel_chunks(g.size(), [&](std::size_t begin, std::size_t end) {
-        bool leaves = allowed <= 0.0;
-        for (std::size_t k = begin; k < end; ++k) {
-            const double moved_sq = drift_grain(system, k, dt, forcing);
-            // written so that NaN is caught; without contacts a grain may move as far as it likes
-            const bool sound = collide ? moved_sq <= g.radius[k] * g.radius[k] : std::isfinite(moved_sq);
-            if (!sound) report_divergence(system, k, dt, std::sqrt(moved_sq));
-            leaves = leaves || (g.x[k] - g.x_listed[k]).squaredNorm() > allowed_sq;
-        }
-        left[begin / parallel_chunk] = leaves ? 1 : 0;
-    });
-    return collide && std::any_of(left.begin(), left.end(), [](std::uint8_t l) { return l != 0; });
-}
-
-/// Contact force and torque on grain k: its own pairs, then those in which it is the second, in the order of the list.
+/// Force and torque of all contacts on a grain, in registers.
 struct Wrench {
-    Vec3 force, torque;
+    HalfPack force, torque;
 };
-Wrench contact_wrench(const GrainSystem& system, std::size_t k) {
+
+/// Those of grain k: its own pairs, those in which it is the second, both in the order of the list, then the walls.
+[[gnu::always_inline]] inline Wrench contact_wrench(const GrainSystem& system, std::size_t k) {
     const Neighbours& list = system.neighbours;
     PairForce own{}, incoming{};
-    for (auto p = static_cast<std::size_t>(list.own[k]); p < static_cast<std::size_t>(list.own[k + 1]); ++p)
-        own += list.force[p];
-    for (auto q = static_cast<std::size_t>(list.incoming_begin[k]);
-         q < static_cast<std::size_t>(list.incoming_begin[k + 1]); ++q)
-        incoming += list.force[static_cast<std::size_t>(list.incoming[q])];
+    const PairForce* force = list.force.data();
+    for (std::int32_t p = list.own[k]; p < list.own[k + 1]; ++p) own += force[p];
+    const std::int32_t* pair = list.incoming.data();
+    for (std::int32_t q = list.incoming_begin[k]; q < list.incoming_begin[k + 1]; ++q) incoming += force[pair[q]];
     const PairForce reaction{-1, -1, -1, 1, 1, 1, 0, 0}; // forces are opposite, torques per radius the same
     const PairForce sum = own + reaction * incoming;
-    Wrench wrench{{sum[0], sum[1], sum[2]}, system.grains.radius[k] * Vec3(sum[3], sum[4], sum[5])};
+    Wrench wrench{__builtin_shufflevector(sum, sum, 0, 1, 2, 6),
+                  system.grains.radius[k] * __builtin_shufflevector(sum, sum, 3, 4, 5, 7)};
     if (list.rolls) {
-        for (auto p = static_cast<std::size_t>(list.own[k]); p < static_cast<std::size_t>(list.own[k + 1]); ++p)
-            wrench.torque += Vec3(list.couple[p][0], list.couple[p][1], list.couple[p][2]);
-        for (auto q = static_cast<std::size_t>(list.incoming_begin[k]);
-             q < static_cast<std::size_t>(list.incoming_begin[k + 1]); ++q) {
-            const PairCouple& couple = list.couple[static_cast<std::size_t>(list.incoming[q])];
-            wrench.torque -= Vec3(couple[0], couple[1], couple[2]);
-        }
+        for (std::int32_t p = list.own[k]; p < list.own[k + 1]; ++p)
+            wrench.torque += list.couple[static_cast<std::size_t>(p)];
+        for (std::int32_t q = list.incoming_begin[k]; q < list.incoming_begin[k + 1]; ++q)
+            wrench.torque -= list.couple[static_cast<std::size_t>(pair[q])];
     }
-    return wrench;
-}
-
-void add_wall_wrench(const GrainSystem& system, std::size_t k, Wrench& wrench) {
     const WallContacts& walls = system.wall_contacts;
-    const auto at = std::lower_bound(walls.near.begin(), walls.near.end(), static_cast<std::int32_t>(k));
-    if (at == walls.near.end() || *at != static_cast<std::int32_t>(k)) return;
-    for (const WallContact& contact : walls.contacts[static_cast<std::size_t>(at - walls.near.begin())]) {
-        wrench.force += contact.force;
-        wrench.torque += contact.torque;
-    }
+    if (!walls.slot.empty() && walls.slot[k] >= 0)
+        for (const WallContact& contact : walls.contacts[static_cast<std::size_t>(walls.slot[k])]) {
+            wrench.force += load3(contact.force.data());
+            wrench.torque += load3(contact.torque.data());
+        }
+    return wrench;
 }
 
 /// Acceleration of every block group: all its grains share it.
@@ -171,9 +144,8 @@ std::vector<Vec3> block_accelerations(const GrainSystem& system) {
         const auto k = static_cast<std::size_t>(place);
         const auto group = static_cast<std::size_t>(g.group[k]);
         if (system.groups[group].motion != Motion::block) continue;
-        Wrench wrench = contact_wrench(system, k);
-        add_wall_wrench(system, k, wrench);
-        force[group] += wrench.force + g.mass[k] * system.domain.gravity;
+        const HalfPack sum = contact_wrench(system, k).force;
+        force[group] += Vec3(sum[0], sum[1], sum[2]) + g.mass[k] * system.domain.gravity;
         inertia[group] += 1.0 / g.mobility[k];
     }
     for (std::size_t q = 0; q < force.size(); ++q)
@@ -186,33 +158,63 @@ bool has_block(const GrainSystem& system) {
                        [](const GrainGroup& g) { return g.motion == Motion::block; });
 }
 
-/// Ends the step of all grains with the forces of the last evaluation. `correct` is false when there was no step.
-void kick(GrainSystem& system, double dt, const FluidForcing* forcing, bool correct) {
+/// Ends the step of grain k with the forces of the last evaluation. `corrects` is false when there was no step.
+[[gnu::always_inline]] inline void kick_grain(GrainSystem& system, std::size_t k, double dt,
+                                              const FluidForcing* forcing, const std::vector<Vec3>& block,
+                                              bool corrects) {
     Grains& g = system.grains;
-    const std::vector<Vec3> block = has_block(system) ? block_accelerations(system) : std::vector<Vec3>();
-    const bool verlet = correct && system.integrator == Integrator::velocity_verlet;
-    parallel_for(g.size(), [&](std::size_t k) {
-        const GrainGroup& group = system.groups[static_cast<std::size_t>(g.group[k])];
-        Wrench wrench = contact_wrench(system, k);
-        add_wall_wrench(system, k, wrench);
-        const Vec3 a = group.motion == Motion::block
-                           ? block[static_cast<std::size_t>(g.group[k])]
-                           : Vec3(g.mobility[k] * (wrench.force + g.mass[k] * system.domain.gravity));
-        Vec3 alpha = Vec3::Zero();
-        if (group.rotation && group.motion == Motion::free)
-            alpha = wrench.torque / sphere_inertia(g.mass[k], 2.0 * g.radius[k]);
-        if (verlet) {
-            const StepFunctions f = step_functions(forcing, k);
-            g.v[k] = predicted_velocity(g, k, f, dt) + (dt * f.phi2) * (a - g.a[k]);
-            g.omega[k] += (0.5 * dt) * (g.alpha[k] + alpha);
-        }
-        g.a[k] = a;
-        g.alpha[k] = alpha;
-    });
+    const Wrench wrench = contact_wrench(system, k);
+    HalfPack a = g.mobility[k] * (wrench.force + g.mass[k] * load3(system.domain.gravity.data()));
+    if (!block.empty() && system.groups[static_cast<std::size_t>(g.group[k])].motion == Motion::block)
+        a = load3(block[static_cast<std::size_t>(g.group[k])].data());
+    const HalfPack alpha = g.spin_mobility[k] * wrench.torque;
+    if (corrects) {
+        const StepFunctions f = step_functions(forcing, k);
+        store3(g.v[k].data(), predicted_velocity(g, k, f, dt) + (dt * f.phi2) * (a - load3(g.a[k].data())));
+        store3(g.omega[k].data(), load3(g.omega[k].data()) + (0.5 * dt) * (load3(g.alpha[k].data()) + alpha));
+    }
+    store3(g.a[k].data(), a);
+    store3(g.alpha[k].data(), alpha);
 }
 
-template <class FieldType>
-void reorder_if_used(FieldType& field, const std::vector<std::int32_t>& order) {
+/// How far a grain may be from where it was listed at the end of the coming step [m]; negative if walls have moved
+/// more.
+double allowed_distance(const GrainSystem& system, double dt) {
+    double fastest_wall = 0.0;
+    for (const WallBody& wall : system.walls) fastest_wall = std::max(fastest_wall, wall.velocity.norm());
+    const double since = dt * static_cast<double>(system.step + 1) - system.listed_time;
+    return 0.5 * system.neighbours.skin - fastest_wall * since;
+}
+
+/// One pass over all grains: ends a step (kicks), begins the next (drifts), or both. Returns true when the neighbour
+/// list does not hold for the new positions. `corrects` as for kick_grain.
+template <bool kicks, bool drifts>
+bool move_grains(GrainSystem& system, double dt, const FluidForcing* forcing, bool corrects) {
+    Grains& g = system.grains;
+    const std::vector<Vec3> block = kicks && has_block(system) ? block_accelerations(system) : std::vector<Vec3>();
+    const bool collide = !contactless(system.contact);
+    const double allowed = allowed_distance(system, dt);
+    const double allowed_sq = allowed > 0.0 ? allowed * allowed : -1.0;
+    std::vector<std::uint8_t> left((g.size() + parallel_chunk - 1) / parallel_chunk, 0);
+    parallel_chunks(g.size(), [&](std::size_t begin, std::size_t end) {
+        bool leaves = false;
+        for (std::size_t k = begin; k < end; ++k) {
+            if constexpr (kicks) kick_grain(system, k, dt, forcing, block, corrects);
+            if constexpr (drifts) {
+                const double moved_sq = drift_grain(system, k, dt, forcing);
+                // written so that NaN is caught; without contacts a grain may move as far as it likes
+                const bool sound = collide ? moved_sq <= g.radius[k] * g.radius[k] : std::isfinite(moved_sq);
+                if (!sound) report_divergence(system, k, dt, std::sqrt(moved_sq));
+                const HalfPack away = load3(g.x[k].data()) - load3(g.x_listed[k].data());
+                leaves |= dot3(away, away) > allowed_sq;
+            }
+        }
+        left[begin / parallel_chunk] = leaves ? 1 : 0;
+    });
+    return collide && std::any_of(left.begin(), left.end(), [](std::uint8_t l) { return l != 0; });
+}
+
+template <class FieldType> void reorder_if_used(FieldType& field, const std::vector<std::int32_t>& order) {
     if (!field.empty()) reorder(field, order);
 }
 
@@ -232,8 +234,8 @@ void renew_lists(GrainSystem& system, FluidForcing* forcing) {
     const std::vector<WallContact> on_walls = all_wall_contacts(system.wall_contacts);
     const Field<GrainRecord> records = list.records;
     const Field<SpinRecord> spins = list.spins;
-    const std::vector<std::int32_t> order = rebuild(list, system.grains, system.groups, system.domain,
-                                                    remembered_contacts(list, system.grains));
+    const std::vector<std::int32_t> order =
+        rebuild(list, system.grains, system.groups, system.domain, remembered_contacts(list, system.grains));
     rebuild(system.wall_contacts, system.walls, system.grains, list.skin, system.time, on_walls);
     system.listed_time = system.time;
     if (forcing != nullptr) reorder(*forcing, order);
@@ -242,7 +244,7 @@ void renew_lists(GrainSystem& system, FluidForcing* forcing) {
     for (std::size_t k = 0; k < order.size(); ++k) {
         const GrainRecord& record = records[static_cast<std::size_t>(order[k])];
         const SpinRecord& spin = spins[static_cast<std::size_t>(order[k])];
-        write_record(list, k, system.grains.x[k], {record.vx, record.vy, record.vz}, {spin.x, spin.y, spin.z});
+        write_record(list, k, load3(system.grains.x[k].data()), load3(&record.vx), load3(&spin.x));
     }
 }
 
@@ -292,7 +294,7 @@ void start(GrainSystem& system, FluidForcing* forcing) {
     }
     if (first) {
         evaluate_contacts(system, 0.0);
-        kick(system, 0.0, forcing, false);
+        move_grains<true, false>(system, 0.0, forcing, false);
     }
     system.started = true;
 }
@@ -318,23 +320,23 @@ void restore_lists(GrainSystem& system, const std::vector<RememberedContact>& pa
 
 void advance_grains(GrainSystem& system, std::int64_t steps, double dt, FluidForcing* forcing) {
     start(system, forcing);
-    for (std::int64_t s = 0; s < steps; ++s) {
-        const bool stale = drift(system, dt, forcing);
+    const bool verlet = system.integrator == Integrator::velocity_verlet;
+    bool stale = steps > 0 && move_grains<false, true>(system, dt, forcing, verlet);
+    for (std::int64_t s = 1; s <= steps; ++s) {
         ++system.step;
         system.time = dt * static_cast<double>(system.step);
         if (stale) renew_lists(system, forcing);
         evaluate_contacts(system, dt);
-        kick(system, dt, forcing, true);
+        if (s < steps)
+            stale = move_grains<true, true>(system, dt, forcing, verlet);
+        else
+            move_grains<true, false>(system, dt, forcing, verlet);
     }
 }
 
 std::vector<Vec3> contact_forces(const GrainSystem& system) {
     std::vector<Vec3> force(system.grains.size());
-    for (std::size_t k = 0; k < force.size(); ++k) {
-        Wrench wrench = contact_wrench(system, k);
-        add_wall_wrench(system, k, wrench);
-        force[k] = wrench.force;
-    }
+    for (std::size_t k = 0; k < force.size(); ++k) store3(force[k].data(), contact_wrench(system, k).force);
     return force;
 }
 

@@ -1,6 +1,6 @@
 #include "dem/arrange.hpp"
 
-#include "core/errors.hpp"
+#include "core/sphere.hpp"
 #include "dem/sphere_grid.hpp"
 
 #include <fmt/format.h>
@@ -112,7 +112,7 @@ RandomPlaces::RandomPlaces(Table& table)
 
 void RandomPlaces::fail(std::size_t reached, const std::vector<double>& radius) const {
     double solid = 0.0;
-    for (std::size_t i = 0; i < reached; ++i) solid += sphere_volume(radius[i]);
+    for (std::size_t i = 0; i < reached; ++i) solid += sphere_volume(2.0 * radius[i]);
     const double fraction_reached = solid / (upper - lower).prod();
     table_.fail("count",
                 fmt::format("no place without overlap for grain {} after {} tries: {} of {} grains are placed, a "

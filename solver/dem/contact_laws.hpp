@@ -43,7 +43,7 @@ inline double damping_ratio(double restitution) {
 /// Stretch of a tangential spring at the end of the step. The stretch is kept at half steps (midpoint rule, second
 /// order); the part along the new normal is dropped because the contact plane has turned with the grains.
 template <class T>
-Space<T> turned_stretch(const Space<T>& stretch, const Space<T>& slip, const Contact<T>& c) {
+[[gnu::always_inline]] inline Space<T> turned_stretch(const Space<T>& stretch, const Space<T>& slip, const Contact<T>& c) {
     const Space<T> now = stretch + (broadcast<T>(0.5) * c.time_step) * slip;
     return now - dot(now, c.normal) * c.normal;
 }
@@ -51,7 +51,7 @@ Space<T> turned_stretch(const Space<T>& stretch, const Space<T>& slip, const Con
 /// A tangential spring and dashpot limited by Coulomb's friction; `stretch` is advanced to the next half step. A contact
 /// that slides keeps the stretch which carries exactly the limit.
 template <class T>
-Space<T> frictional_force(const Contact<T>& c, const Space<T>& slip, const Space<T>& now, T spring, T dashpot, T limit,
+[[gnu::always_inline]] inline Space<T> frictional_force(const Contact<T>& c, const Space<T>& slip, const Space<T>& now, T spring, T dashpot, T limit,
                           Space<T>& stretch) {
     const Space<T> trial = spring * now + dashpot * slip;
     const T trial_sq = dot(trial, trial);
@@ -95,7 +95,7 @@ struct LinearNormal {
 
 /// f_n = k overlap - c v_n with v_n the normal velocity of i against j (negative while approaching).
 template <class T, class P>
-T linear_normal_force(const Contact<T>& c, T normal_velocity, const P& p) {
+[[gnu::always_inline]] inline T linear_normal_force(const Contact<T>& c, T normal_velocity, const P& p) {
     const T damping = p.damping + p.damping_root * square_root(broadcast<T>(1.0) / c.inverse_mass);
     return p.stiffness * c.overlap - damping * normal_velocity;
 }
@@ -115,7 +115,7 @@ struct LinearSpring {
     double contact_time(double inverse_mass, double inverse_radius, double speed) const;
 
     template <class T>
-    static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p, Space<T>& stretch) {
+    [[gnu::always_inline]] static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p, Space<T>& stretch) {
         const T normal_velocity = dot(c.velocity, c.normal);
         const T fn = linear_normal_force(c, normal_velocity, p);
         const Space<T> slip = c.velocity - normal_velocity * c.normal;
@@ -142,7 +142,7 @@ struct LinearSpringCoulomb {
     double contact_time(double inverse_mass, double inverse_radius, double speed) const;
 
     template <class T>
-    static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p, Space<T>& /*stretch*/) {
+    [[gnu::always_inline]] static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p, Space<T>& /*stretch*/) {
         const T zero = broadcast<T>(0.0);
         const T normal_velocity = dot(c.velocity, c.normal);
         const T fn = linear_normal_force(c, normal_velocity, p);
@@ -177,7 +177,7 @@ struct HertzMindlin {
     double contact_time(double inverse_mass, double inverse_radius, double speed) const;
 
     template <class T>
-    static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p, Space<T>& stretch) {
+    [[gnu::always_inline]] static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p, Space<T>& stretch) {
         const T zero = broadcast<T>(0.0), one = broadcast<T>(1.0);
         const T overlap = larger(c.overlap, zero);
         const T patch = square_root(overlap / c.inverse_radius); // contact radius sqrt(R* o) [m]

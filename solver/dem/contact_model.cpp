@@ -53,9 +53,12 @@ Pairs table_of(const std::vector<const Variant*>& laws, std::int32_t materials, 
 } // namespace
 
 MaterialContact read_contact(Table table) {
+    ContactLaw contact = make_family<ContactLaw>(table);
+    // Without friction nothing can roll; with it, whether rolling is resisted is a choice of the scene.
+    const bool frictional = std::visit([](const auto& law) { return law.parameters.friction > 0.0; }, contact);
     RollingLaw rolling = NoRolling{};
-    if (table.has("rolling")) rolling = make_family<RollingLaw>(table.law("rolling"));
-    return {make_family<ContactLaw>(table), std::move(rolling)};
+    if (frictional || table.has("rolling")) rolling = make_family<RollingLaw>(table.law("rolling"));
+    return {std::move(contact), std::move(rolling)};
 }
 
 ContactModel contact_model(const std::vector<std::string>& names,

@@ -34,8 +34,6 @@ inline Pack load(const GrainRecord& record) {
     return p;
 }
 
-using HalfPack [[gnu::vector_size(32)]] = double;
-
 inline HalfPack load(const SpinRecord& record) {
     HalfPack p;
     std::memcpy(&p, &record, sizeof p);
@@ -64,7 +62,7 @@ inline void wrap(Pack& d, double size) {
 }
 
 template <bool radii, bool rolls>
-inline void compute_geometry(const Neighbours& list, std::size_t block, const Domain& domain, double dt, Block& out) {
+[[gnu::always_inline]] inline void compute_geometry(const Neighbours& list, std::size_t block, const Domain& domain, double dt, Block& out) {
     const std::int32_t* i = list.i.data() + 8 * block;
     const std::int32_t* j = list.j.data() + 8 * block;
     const Pack sign{-1, -1, -1, 1, -1, -1, -1, 1}; // differences of x and v, sums of radius and inverse mass
@@ -114,7 +112,7 @@ class LaneParameters {
         std::memcpy(one.data(), &pairs.laws.front().parameters, sizeof one);
         for (std::size_t q = 0; q < numbers; ++q) same_[q] = broadcast<Pack>(one[q]);
     }
-    Packed of(const Neighbours& list, std::size_t block) const {
+    [[gnu::always_inline]] Packed of(const Neighbours& list, std::size_t block) const {
         std::array<Pack, numbers> lanes = same_;
         if (!pairs_.uniform)
             for (std::size_t k = 0; k < 8; ++k) {
@@ -149,7 +147,7 @@ inline void store_stretch(double* at, PackMask touching, const Space<Pack>& stre
 }
 
 template <class Law, class RollingLawType>
-inline void apply_laws(Neighbours& list, std::size_t block, const LaneParameters<Law>& laws,
+[[gnu::always_inline]] inline void apply_laws(Neighbours& list, std::size_t block, const LaneParameters<Law>& laws,
                        const LaneParameters<RollingLawType>& rolling, const Block& b) {
     constexpr bool rolls = !std::is_same_v<RollingLawType, NoRolling>;
     const Pack zero = broadcast<Pack>(0.0);

@@ -28,6 +28,7 @@ struct GrainSystem {
     Grains grains;
     Neighbours neighbours;
     WallContacts wall_contacts;
+    std::vector<Injected> injected; // one per injector
     std::int64_t step = 0; // steps done
     double time = 0.0;     // step * dt [s]
     double listed_time = 0.0; // when the neighbour and wall lists were built [s]

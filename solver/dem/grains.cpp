@@ -17,6 +17,8 @@ void add_grain(Grains& grains, const std::vector<GrainGroup>& groups, std::int32
     grains.radius.push_back(radius);
     grains.mass.push_back(mass);
     grains.mobility.push_back(made_of.motion == Motion::fixed ? 0.0 : 1.0 / mass);
+    const bool turns = made_of.rotation && made_of.motion == Motion::free;
+    grains.spin_mobility.push_back(turns ? 1.0 / sphere_inertia(mass, 2.0 * radius) : 0.0);
     grains.id.push_back(id);
     grains.group.push_back(group);
 }

@@ -38,6 +38,7 @@ struct Grains {
     std::vector<double> radius;   // [m]
     std::vector<double> mass;     // [kg]
     std::vector<double> mobility; // acceleration per force [1/kg]: 1/(m + added mass); 0 for a fixed grain
+    std::vector<double> spin_mobility; // angular acceleration per torque [1/(kg m2)]: 1/I; 0 for a grain that cannot turn
     std::vector<std::int32_t> id;    // order of creation
     std::vector<std::int32_t> group; // index into the groups
 
@@ -53,7 +54,7 @@ template <class G, class F>
 void for_each_field(G& grains, F&& f) {
     f("x", grains.x), f("turns", grains.turns), f("v", grains.v), f("a", grains.a), f("omega", grains.omega), f("alpha", grains.alpha);
     f("x_listed", grains.x_listed), f("radius", grains.radius), f("mass", grains.mass);
-    f("mobility", grains.mobility), f("id", grains.id), f("group", grains.group);
+    f("mobility", grains.mobility), f("spin_mobility", grains.spin_mobility), f("id", grains.id), f("group", grains.group);
 }
 
 /// Position of grain k as if the box had never brought it back [m].

@@ -43,7 +43,7 @@ struct ConstantTorque {
     Parameters<double> parameters;
 
     template <class T>
-    static Space<T> torque(const Rolling<T>& r, const Parameters<T>& p, Space<T>& /*stretch*/) {
+    [[gnu::always_inline]] static Space<T> torque(const Rolling<T>& r, const Parameters<T>& p, Space<T>& /*stretch*/) {
         const T zero = broadcast<T>(0.0);
         const T speed = square_root(dot(r.rotation, r.rotation));
         const T stopping = speed / (r.inverse_inertia * r.time_step);
@@ -70,7 +70,7 @@ struct ElasticPlastic {
     Parameters<double> parameters;
 
     template <class T>
-    static Space<T> torque(const Rolling<T>& r, const Parameters<T>& p, Space<T>& stretch) {
+    [[gnu::always_inline]] static Space<T> torque(const Rolling<T>& r, const Parameters<T>& p, Space<T>& stretch) {
         const T zero = broadcast<T>(0.0), one = broadcast<T>(1.0), half_step = broadcast<T>(0.5) * r.time_step;
         Space<T> now = stretch + half_step * r.rotation;
         now = now - dot(now, r.normal) * r.normal;

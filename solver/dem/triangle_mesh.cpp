@@ -68,6 +68,10 @@ TriangleMesh::TriangleMesh(Triangles triangles) : mesh_(std::move(triangles)) {
     double largest = 0.0;
     for (const Vec3& p : mesh_.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
     flatness_ = 0x1p-21 * largest; // four spacings (2^-23) of the single-precision coordinates of a binary file
+    std::vector<std::int32_t> order(mesh_.corners.size());
+    std::iota(order.begin(), order.end(), 0);
+    build_tree(order, 0, order.size());
+    sort_by_tree(order);
     for (std::size_t t = 0; t < mesh_.corners.size(); ++t) {
         const auto i = static_cast<std::int32_t>(t);
         normals_.push_back((corner(i, 1) - corner(i, 0)).cross(corner(i, 2) - corner(i, 0)).normalized());
@@ -75,9 +79,24 @@ TriangleMesh::TriangleMesh(Triangles triangles) : mesh_(std::move(triangles)) {
     find_edges();
     number_faces();
     number_edges();
-    order_.resize(mesh_.corners.size());
-    std::iota(order_.begin(), order_.end(), 0);
-    build_tree(0, order_.size());
+}
+
+void TriangleMesh::sort_by_tree(const std::vector<std::int32_t>& order) {
+    // What is near in space is near in memory: a look-up then touches few cache lines.
+    Triangles sorted;
+    std::vector<std::int32_t> renamed(mesh_.points.size(), -1);
+    for (const std::int32_t t : order) {
+        std::array<std::int32_t, 3> corners = mesh_.corners[at(t)];
+        for (std::int32_t& p : corners) {
+            if (renamed[at(p)] < 0) {
+                renamed[at(p)] = static_cast<std::int32_t>(sorted.points.size());
+                sorted.points.push_back(mesh_.points[at(p)]);
+            }
+            p = renamed[at(p)];
+        }
+        sorted.corners.push_back(corners);
+    }
+    mesh_ = std::move(sorted);
 }
 
 const Vec3& TriangleMesh::corner(std::int32_t triangle, std::size_t k) const {
@@ -196,35 +215,35 @@ void TriangleMesh::number_edges() {
     }
 }
 
-void TriangleMesh::build_tree(std::size_t begin, std::size_t end) {
+void TriangleMesh::build_tree(std::vector<std::int32_t>& order, std::size_t begin, std::size_t end) {
     constexpr std::size_t leaf_size = 4; // triangles; 2 to 8 are equally fast
     const std::size_t self = nodes_.size();
-    Node node{corner(order_[begin], 0), corner(order_[begin], 0), static_cast<std::int32_t>(begin),
+    Node node{corner(order[begin], 0), corner(order[begin], 0), static_cast<std::int32_t>(begin),
               static_cast<std::int32_t>(end - begin)};
     Vec3 lowest = Vec3::Constant(std::numeric_limits<double>::max()), highest = -lowest; // of three times the centroids
     const auto centroid = [&](std::int32_t t) -> Vec3 { return corner(t, 0) + corner(t, 1) + corner(t, 2); };
     for (std::size_t i = begin; i < end; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
-            node.lower = node.lower.cwiseMin(corner(order_[i], k));
-            node.upper = node.upper.cwiseMax(corner(order_[i], k));
+            node.lower = node.lower.cwiseMin(corner(order[i], k));
+            node.upper = node.upper.cwiseMax(corner(order[i], k));
         }
-        lowest = lowest.cwiseMin(centroid(order_[i]));
-        highest = highest.cwiseMax(centroid(order_[i]));
+        lowest = lowest.cwiseMin(centroid(order[i]));
+        highest = highest.cwiseMax(centroid(order[i]));
     }
     nodes_.push_back(node);
     if (end - begin <= leaf_size) return;
     Eigen::Index axis = 0;
     (highest - lowest).maxCoeff(&axis);
     const std::size_t middle = begin + (end - begin) / 2;
-    const auto iterator = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+    const auto iterator = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(iterator(begin), iterator(middle), iterator(end), [&](std::int32_t s, std::int32_t t) {
         const double cs = centroid(s)[axis], ct = centroid(t)[axis];
         return cs != ct ? cs < ct : s < t;
     });
-    build_tree(begin, middle);
+    build_tree(order, begin, middle);
     nodes_[self].first = static_cast<std::int32_t>(nodes_.size());
     nodes_[self].count = 0;
-    build_tree(middle, end);
+    build_tree(order, middle, end);
 }
 
 TriangleMesh::Nearest TriangleMesh::nearest_point(std::int32_t triangle, const Vec3& x) const {
@@ -261,7 +280,7 @@ void TriangleMesh::collect(const Vec3& x, double reach, std::vector<Nearest>& ne
             continue;
         }
         for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-            const Nearest p = nearest_point(order_[at(i)], x);
+            const Nearest p = nearest_point(i, x);
             if (p.distance < reach) nearest.push_back(p);
         }
     }

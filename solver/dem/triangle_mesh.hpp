@@ -53,7 +53,7 @@ private:
     };
     struct Node { // of the bounding-box tree; the left child follows its parent
         Vec3 lower, upper;
-        std::int32_t first; // leaf: first triangle in order_; otherwise the right child
+        std::int32_t first; // leaf: first triangle; otherwise the right child
         std::int32_t count; // of triangles in a leaf, 0 otherwise
     };
     struct Nearest;
@@ -61,7 +61,8 @@ private:
     void find_edges();
     void number_faces();
     void number_edges();
-    void build_tree(std::size_t begin, std::size_t end);
+    void build_tree(std::vector<std::int32_t>& order, std::size_t begin, std::size_t end);
+    void sort_by_tree(const std::vector<std::int32_t>& order);
     void contacts(const Vec3& x, double reach, std::vector<WallPoint>& found) const;
     void collect(const Vec3& x, double reach, std::vector<Nearest>& nearest) const;
     Nearest nearest_point(std::int32_t triangle, const Vec3& x) const;
@@ -82,7 +83,6 @@ private:
     std::vector<std::size_t> point_first_;                    // per point: its edges in point_edges_
     std::vector<std::int32_t> point_edges_;
     std::vector<std::int32_t> point_element_;
-    std::vector<std::int32_t> order_; // triangles in the order of the tree
     std::vector<Node> nodes_;
 };
 

@@ -58,6 +58,7 @@ void update_grain(std::vector<WallContact>& contacts, const std::vector<WallBody
     const std::vector<WallContact> before = contacts; // a handful at most
     contacts.clear();
     const GrainRecord& grain = list.records[place];
+    if (grain.inverse_mass == 0.0) return; // a fixed grain and a wall: two bodies of infinite mass
     const Vec3 x(grain.x, grain.y, grain.z);
     const auto material = static_cast<std::int32_t>(list.spins[place].material);
     for (std::size_t w = 0; w < walls.size(); ++w) {
@@ -87,20 +88,23 @@ void rebuild(WallContacts& near_walls, const std::vector<WallBody>& walls, const
              double time, const std::vector<WallContact>& memory) {
     near_walls.near.clear();
     near_walls.contacts.clear();
+    near_walls.slot.clear();
     if (walls.empty()) return;
+    near_walls.slot.assign(grains.size(), -1);
     for (std::size_t k = 0; k < grains.size(); ++k) {
         bool close = false;
         for (const WallBody& wall : walls)
             wall.touch(grains.x[k], grains.radius[k] + skin, time, [&](const WallPoint&) { close = true; });
-        if (close) near_walls.near.push_back(static_cast<std::int32_t>(k));
+        if (!close) continue;
+        near_walls.slot[k] = static_cast<std::int32_t>(near_walls.near.size());
+        near_walls.near.push_back(static_cast<std::int32_t>(k));
     }
     near_walls.contacts.resize(near_walls.near.size());
     const std::vector<std::int32_t> place = positions_of_ids(grains);
     for (const WallContact& contact : memory) {
-        const auto at = std::lower_bound(near_walls.near.begin(), near_walls.near.end(),
-                                         place[static_cast<std::size_t>(contact.grain)]);
-        if (at != near_walls.near.end() && *at == place[static_cast<std::size_t>(contact.grain)])
-            near_walls.contacts[static_cast<std::size_t>(at - near_walls.near.begin())].push_back(contact);
+        const auto k = static_cast<std::size_t>(place[static_cast<std::size_t>(contact.grain)]);
+        if (near_walls.slot[k] >= 0)
+            near_walls.contacts[static_cast<std::size_t>(near_walls.slot[k])].push_back(contact);
     }
 }
 

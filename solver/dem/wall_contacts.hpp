@@ -27,6 +27,7 @@ struct WallContact {
 /// Grains near a wall, by place in the present order, and their contacts.
 struct WallContacts {
     std::vector<std::int32_t> near;                 // places, ascending
+    std::vector<std::int32_t> slot;                 // by place: q of near[q], or -1; empty without walls
     std::vector<std::vector<WallContact>> contacts; // of near[q]
 };
 

@@ -6,7 +6,7 @@
 // Walls have no periodic images: one that crosses a periodic side must itself reach from side to side.
 #pragma once
 
-#include "core/table.hpp"
+#include "core/laws.hpp"
 #include "core/vec.hpp"
 #include "dem/triangle_mesh.hpp"
 #include "dem/wall_point.hpp"

@@ -76,7 +76,10 @@ Hdf5Writer::Hdf5Writer(std::string path, bool checked)
 
 Hdf5Handle Hdf5Writer::created_file() const {
     prepare_library();
-    Hdf5Handle file(H5Fcreate(aside_name(path_).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    // Since version 1.10 of the format the library's own records carry checksums too.
+    if (checked_) H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_LATEST);
+    Hdf5Handle file(H5Fcreate(aside_name(path_).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
     if (!file.valid()) fail();
     return file;
 }
@@ -118,6 +121,10 @@ void Hdf5Writer::write(const std::string& name, std::span<const std::int32_t> da
 }
 void Hdf5Writer::write(const std::string& name, std::span<const std::int64_t> data, const Shape& shape) {
     write_raw(name, data.data(), data.size(), H5T_NATIVE_INT64, shape);
+}
+
+void Hdf5Writer::write_bytes(const std::string& name, const std::string& text) {
+    write_raw(name, text.data(), text.size(), H5T_NATIVE_UCHAR, {text.size()});
 }
 
 void Hdf5Writer::group(const std::string& name) {
@@ -219,6 +226,16 @@ std::vector<std::int64_t> Hdf5Reader::integers(const std::string& name) const {
     std::vector<std::int64_t> values(product(shape(name)));
     if (!values.empty()) read_raw(name, H5T_NATIVE_INT64, values.data());
     return values;
+}
+
+std::string Hdf5Reader::bytes(const std::string& name) const {
+    std::string values(product(shape(name)), '\0');
+    if (!values.empty()) read_raw(name, H5T_NATIVE_UCHAR, values.data());
+    return values;
+}
+
+bool Hdf5Reader::has_attribute(const std::string& object, const std::string& name) const {
+    return H5Aexists_by_name(file_.get(), object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
 }
 
 Hdf5Handle Hdf5Reader::attribute(const std::string& object, const std::string& name) const {

@@ -38,7 +38,7 @@ class Hdf5Handle {
 /// file that was not finished is removed. The bytes written depend on the data only (no times inside).
 class Hdf5Writer {
   public:
-    /// `checked`: every dataset carries checksums that are verified when it is read.
+    /// `checked`: all data carry checksums that are verified when they are read.
     explicit Hdf5Writer(std::string path, bool checked = false);
     Hdf5Writer(const Hdf5Writer&) = delete;
     Hdf5Writer& operator=(const Hdf5Writer&) = delete;
@@ -53,6 +53,8 @@ class Hdf5Writer {
     void write(const std::string& name, const std::vector<T>& data) {
         write(name, std::span<const T>(data), {data.size()});
     }
+    /// The bytes of a text as a dataset; checked as any other.
+    void write_bytes(const std::string& name, const std::string& text);
     void group(const std::string& name);
     /// Attribute `name` of the group or dataset `object` ("/" for the file).
     void attribute(const std::string& object, const std::string& name, const std::string& text);
@@ -85,6 +87,8 @@ class Hdf5Reader {
     /// Row-major content; integers are converted to the asked type if it holds them exactly.
     std::vector<double> doubles(const std::string& name) const;
     std::vector<std::int64_t> integers(const std::string& name) const;
+    std::string bytes(const std::string& name) const;
+    bool has_attribute(const std::string& object, const std::string& name) const;
     std::string text(const std::string& object, const std::string& attribute) const;
     double number(const std::string& object, const std::string& attribute) const;
     std::int64_t integer(const std::string& object, const std::string& attribute) const;

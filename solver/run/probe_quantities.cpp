@@ -83,7 +83,7 @@ double GrainKineticEnergy::operator()(const Sample& s) const {
     return s.sum(0.0, [&](std::size_t k) {
         if (!members.contain(g, k)) return 0.0;
         return 0.5 * g.mass[k] * g.v[k].squaredNorm() +
-               0.5 * sphere_inertia(g.mass[k], g.radius[k]) * g.omega[k].squaredNorm();
+               0.5 * sphere_inertia(g.mass[k], 2.0 * g.radius[k]) * g.omega[k].squaredNorm();
     });
 }
 
@@ -125,7 +125,7 @@ double GrainAngularMomentum::operator()(const Sample& s) const {
     const Grains& g = s.grains;
     return s.sum(0.0, [&](std::size_t k) {
         if (!members.contain(g, k)) return 0.0;
-        return component.of(g.mass[k] * g.x[k].cross(g.v[k]) + sphere_inertia(g.mass[k], g.radius[k]) * g.omega[k]);
+        return component.of(g.mass[k] * g.x[k].cross(g.v[k]) + sphere_inertia(g.mass[k], 2.0 * g.radius[k]) * g.omega[k]);
     });
 }
 

@@ -2,7 +2,6 @@
 //     static constexpr std::string_view units
 //     void bind(const Simulation&, const Table&)    optional: checks and resolves names against the scene
 //     operator()(const Sample&) const               the value, or a vector with one value per grain by id
-//     static constexpr bool mean_of_step = true     optional: there is no value before the first step
 // To add one: write the struct, name it in ProbeQuantity at the end, add its test and its README row.
 // Sums run in the order of ids, so that neither threads nor the sorting of the grains change a bit.
 #pragma once
@@ -228,9 +227,8 @@ struct PackingFraction {
 
 struct GrainFluidForce {
     static constexpr std::string_view name = "grain_fluid_force", units = "N";
-    static constexpr bool mean_of_step = true;
-    static constexpr LawInfo info{"force of the fluid in the last step on `grain`, or on all (of `group`), [axis]",
-                                  "with a fluid; from the first step on", "definition"};
+    static constexpr LawInfo info{"mean force of the fluid in the last step on `grain`, or on all (of `group`), [axis]",
+                                  "with a fluid", "definition"};
     std::optional<OneGrain> grain;
     Members members;
     Component component;
@@ -241,9 +239,8 @@ struct GrainFluidForce {
 
 struct GrainDragForce {
     static constexpr std::string_view name = "grain_drag_force", units = "N";
-    static constexpr bool mean_of_step = true;
-    static constexpr LawInfo info{"drag [axis] on every grain in the last step, by order of creation",
-                                  "with a fluid, without injectors; from the first step on", "definition"};
+    static constexpr LawInfo info{"mean drag [axis] in the last step on every grain, by order of creation",
+                                  "with a fluid, without injectors", "definition"};
     Component component;
     explicit GrainDragForce(Table& table) : component(table) {}
     static void bind(const Simulation& s, const Table& t);

@@ -16,14 +16,6 @@ constexpr double interval_tolerance = 1e-9;
 template <class Quantity>
 constexpr bool is_per_grain = std::is_same_v<std::invoke_result_t<const Quantity&, const Sample&>, std::vector<double>>;
 
-template <class Quantity>
-constexpr bool is_mean_of_step() {
-    if constexpr (requires { Quantity::mean_of_step; })
-        return Quantity::mean_of_step;
-    else
-        return false;
-}
-
 std::string checked_name(Table& table, std::set<std::string>& used) {
     std::string name = table.text("name");
     const bool plain = !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), [](char c) {
@@ -71,12 +63,6 @@ std::string Probe::units() const {
     return std::visit([](const auto& q) { return std::string(q.units); }, quantity);
 }
 
-bool Probe::due(std::int64_t step) const {
-    const bool needs_step = std::visit([](const auto& q) { return is_mean_of_step<std::decay_t<decltype(q)>>(); },
-                                       quantity);
-    return step % steps == 0 && (step > 0 || !needs_step);
-}
-
 std::vector<Probe> read_probes(Scene& scene, const Simulation& simulation) {
     std::vector<Probe> probes;
     std::set<std::string> names;
@@ -97,10 +83,10 @@ std::vector<Probe> read_probes(Scene& scene, const Simulation& simulation) {
 
 void record(std::vector<Probe>& probes, const Simulation& simulation) {
     const std::int64_t step = simulation.grains.step;
-    if (std::none_of(probes.begin(), probes.end(), [&](const Probe& p) { return p.due(step); })) return;
+    if (std::none_of(probes.begin(), probes.end(), [&](const Probe& p) { return step % p.steps == 0; })) return;
     const Sample sample(simulation);
     for (Probe& probe : probes) {
-        if (!probe.due(step)) continue;
+        if (step % probe.steps != 0) continue;
         probe.time.push_back(static_cast<double>(step) * simulation.timing.dt);
         std::visit(
             [&](const auto& quantity) {

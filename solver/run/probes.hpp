@@ -20,8 +20,6 @@ struct Probe {
     /// True for quantities with one value per grain, even if there is one grain only.
     bool per_grain() const;
     std::string units() const;
-    /// True if a value exists and is due after `step` steps.
-    bool due(std::int64_t step) const;
 };
 
 /// Reads the [[probe]] tables. InputError for an unknown quantity, names that are used twice or not made of

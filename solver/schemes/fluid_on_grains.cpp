@@ -2,7 +2,10 @@
 
 #include "core/parallel.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
 
 namespace plumb {
 
@@ -188,7 +191,9 @@ FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling) {
                     {},
                     {},
                     {}};
+    std::set<std::string> seen;
     for (const std::string& name : coupling.texts("forces")) {
+        if (!seen.insert(name).second) coupling.fail("forces", fmt::format("\"{}\" is named twice", name));
         if (name == "basset")
             f.history = make_family<HistoryForce>(coupling.law("basset"));
         else {

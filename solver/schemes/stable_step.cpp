@@ -29,14 +29,21 @@ struct Extremes {
     double radius = std::numeric_limits<double>::infinity();
 };
 
+constexpr double most_steps = 1e15; // in one interval: more would not end, and doubles count whole numbers to 9e15
+
 /// Least number of whole steps that are not longer than `limit`.
-std::int64_t whole_steps(double interval, double limit) {
-    return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(interval / limit * (1.0 - 1e-12))));
+std::int64_t whole_steps(Table& time, double interval, double limit) {
+    const double steps = std::ceil(interval / limit * (1.0 - 1e-12));
+    if (!(steps < most_steps))
+        time.fail("step", fmt::format("the limit of {} s makes more than {:.0e} steps of one output interval", limit,
+                                      most_steps));
+    return std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
 }
 
 /// interval/dt when it is whole within rounding; InputError otherwise.
 std::int64_t whole_ratio(Table& time, std::string_view key, double interval, double dt, std::string_view of) {
     const double ratio = interval / dt;
+    if (!(ratio < most_steps)) time.fail(key, fmt::format("{} s is more than {:.0e} {} of {} s", interval, most_steps, of, dt));
     if (std::abs(ratio - std::nearbyint(ratio)) > 1e-9 * ratio || ratio < 0.5)
         time.fail(key, fmt::format("{} s is not a whole number of {} of {} s", interval, of, dt));
     return static_cast<std::int64_t>(std::nearbyint(ratio));
@@ -87,7 +94,7 @@ Timing timing(Table& time, std::vector<StepLimit> limits) {
     if (time.type("step") == toml::node_type::string) {
         time.choice("step", {"auto"});
         const double limit = least == t.limits.end() ? std::numeric_limits<double>::infinity() : least->seconds;
-        t.steps_per_output = whole_steps(t.output_interval, limit);
+        t.steps_per_output = whole_steps(time, t.output_interval, limit);
         t.dt = t.output_interval / static_cast<double>(t.steps_per_output);
         t.ruling = limit < t.output_interval ? least->name : "output_interval";
     } else {

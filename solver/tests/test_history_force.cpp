@@ -110,6 +110,16 @@ TEST(BassetKernel, ErrorStaysWithinItsBound) {
         }
 }
 
+// A wrong spacing: far from both ends only the spacing errs, by a wave in log t whose height is a third of the bound.
+TEST(BassetKernel, SpacingTakesAThirdOfTheBound) {
+    for (const int count : {16, 24, 32}) {
+        const ExponentialSum sum = inverse_square_root(count, 1e-6, 1.0);
+        double worst = 0.0;
+        for (double t = 3e-4; t < 3e-3; t *= 1.002) worst = std::max(worst, std::abs(sum(t) * std::sqrt(t) - 1.0));
+        EXPECT_NEAR(worst / (sum.relative_error / 3.0), 1.0, 0.02) << count;
+    }
+}
+
 // The accuracy promised in the doc comment.
 TEST(BassetKernel, AccuracyOverFourDecades) {
     EXPECT_LT(inverse_square_root(16, 1e-4, 1.0).relative_error, 3e-4);

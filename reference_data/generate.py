@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+"""Write the analytic tables of this folder, or check that the committed ones are what the theory gives.
+
+    generate.py            write every table
+    generate.py --check    recompute and compare; exit 1 naming the first difference of each table
+
+Numbers agree to 1e-12 relative (elementary functions differ in the last bits between machines); tables made by a
+least-squares solution carry six digits and agree to one unit of the sixth. Needs NumPy and SciPy.
+"""
+
+import argparse
+import csv
+import io
+import sys
+from pathlib import Path
+from typing import Callable, NamedTuple
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from drag_laws.drag_laws import LAWS, in_range  # noqa: E402
+from theory import cylinder_arrays, rayleigh_taylor, settling  # noqa: E402
+
+ROOT = Path(__file__).resolve().parent
+
+# The grid avoids every point where a law jumps (Re_i = 0.1 ... 10^4 and 5000 of Morsi-Alexander, eps = 0.8 of Gidaspow,
+# eps = 0.6 of Koch-Hill), so that < against <= cannot decide a row.
+DRAG_EPS = (0.4, 0.45, 0.5, 0.55, 0.62, 0.7, 0.78, 0.82, 0.9, 0.97, 1.0)
+DRAG_RE = (0.0, 1.0e-3) + tuple(float(f"{m}e{k}") for k in range(-3, 4) for m in (1.3, 3.2, 6.8)) + (1.3e4,)
+
+
+class Generated(NamedTuple):
+    """One analytic table: where it goes, its header, its rows, and the digits written."""
+
+    path: str
+    header: str
+    rows: Callable
+    digits: int = 17
+
+
+def drag_rows():
+    """(law, eps, Re, F, in range) over the conformance grid."""
+    return [
+        (name, eps, re, float(law(eps, re)), int(in_range(name, eps, re)))
+        for name, law in LAWS.items()
+        for eps in DRAG_EPS
+        for re in DRAG_RE
+    ]
+
+
+def cylinder_rows(array):
+    """Rows of one array without its name."""
+    return [row[1:] for row in cylinder_arrays.rows() if row[0] == array]
+
+
+TABLES = (
+    Generated("drag_laws/drag_table.csv", "law,eps [1],re [1],f [1],in_range [1]", drag_rows),
+    Generated(
+        "settling_theory/single_grain.csv",
+        "fluid,rho [kg/m3],mu [Pa s],tau_p [s],u_t_stokes [m/s],u_t_di_felice [m/s],re_p [1]",
+        settling.single_grain_rows,
+    ),
+    Generated(
+        "settling_theory/hindered.csv",
+        "fluid,eps [1],v_mixture [m/s],re_mixture [1],v_plain [m/s],re_plain [1]",
+        settling.hindered_rows,
+    ),
+    Generated(
+        "chandrasekhar_1961/growth_rate.csv",
+        "fluid,viscosity_above,k [1/m],rho_above [kg/m3],mu_above [Pa s],n [1/s]",
+        rayleigh_taylor.rows,
+    ),
+    Generated(
+        "sangani_acrivos_1982/square.csv",
+        "solid_fraction [1],force [1],permeability [1]",
+        lambda: [row[:3] for row in cylinder_rows("square")],
+        6,
+    ),
+    Generated(
+        "sangani_acrivos_1982/hexagonal.csv",
+        "solid_fraction [1],force [1],permeability [1]",
+        lambda: [row[:3] for row in cylinder_rows("hexagonal")],
+        6,
+    ),
+    Generated(
+        "gebart_1992/permeability.csv",
+        "array,solid_fraction [1],permeability [1],over_exact [1]",
+        lambda: [(row[0], row[1], row[4], row[5]) for row in cylinder_arrays.rows()],
+        6,
+    ),
+)
+
+
+def _text(value, digits):
+    if isinstance(value, str):
+        return value
+    if isinstance(value, int):
+        return str(value)
+    return repr(value) if digits == 17 else f"{value:.{digits}g}"
+
+
+def csv_text(table):
+    """The table as the text of its file."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(table.header.split(","))
+    writer.writerows([_text(value, table.digits) for value in row] for row in table.rows())
+    return stream.getvalue()
+
+
+def _same(mine, theirs, digits):
+    if mine == theirs:
+        return True
+    try:
+        a, b = float(mine), float(theirs)
+    except ValueError:
+        return False
+    return abs(a - b) <= (1e-12 if digits == 17 else 1.01 * 10.0 ** (1 - digits)) * max(abs(a), abs(b))
+
+
+def difference(table):
+    """None, or a sentence that names the first difference between the committed table and the theory."""
+    path = ROOT / table.path
+    if not path.is_file():
+        return f"{table.path}: missing"
+    committed = list(csv.reader(io.StringIO(path.read_text(encoding="utf-8"))))
+    fresh = list(csv.reader(io.StringIO(csv_text(table))))
+    if len(committed) != len(fresh):
+        return f"{table.path}: {len(committed)} lines, expected {len(fresh)}"
+    for number, (ours, theirs) in enumerate(zip(fresh, committed), start=1):
+        if len(ours) != len(theirs):
+            return f"{table.path}, line {number}: {len(theirs)} fields, expected {len(ours)}"
+        for name, mine, other in zip(fresh[0], ours, theirs):
+            if not _same(mine, other, table.digits):
+                return f"{table.path}, line {number}, {name}: {other}, expected {mine}"
+    return None
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--check", action="store_true", help="compare with the committed tables instead of writing")
+    if not parser.parse_args().check:
+        for table in TABLES:
+            (ROOT / table.path).parent.mkdir(exist_ok=True)
+            (ROOT / table.path).write_text(csv_text(table), encoding="utf-8")
+            print(f"wrote {table.path}")
+        return 0
+    found = [message for message in map(difference, TABLES) if message]
+    print("\n".join(found) if found else f"{len(TABLES)} analytic tables agree")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

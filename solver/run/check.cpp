@@ -1,0 +1,191 @@
+#include "run/check.hpp"
+
+#include "core/parallel.hpp"
+#include "run/grain_numbers.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace plumb {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Rough rates of one core of about 3 GHz, for a prediction to within a factor of a few; measured ones are in
+// solver/benchmarks.
+constexpr double contact_rate = 2e7; // grain steps per second with contacts
+constexpr double fluid_rate = 2e6;   // with a fluid: drag law and step weights of every grain
+constexpr double step_cost = 2e-6;   // fixed cost of a step [s]
+
+// Memory [bytes]: what the fields and lists of the engine take, with six neighbours per grain in the list.
+constexpr double bytes_per_grain = 500.0, bytes_per_pair = 150.0, pairs_per_grain = 6.0, bytes_of_program = 2e7;
+
+double injected_grains(const Simulation& s) {
+    double all = 0.0;
+    for (const Injector& injector : s.grains.injectors)
+        all += static_cast<double>(injector.events_due(s.timing.end)) * static_cast<double>(injector.points.size());
+    return all;
+}
+
+double most_grains(const Simulation& s) { return static_cast<double>(s.grains.grains.size()) + injected_grains(s); }
+
+Json grains_part(const Simulation& s) {
+    const Grains& g = s.grains.grains;
+    Json part{{"count", g.size()}, {"injected_at_most", injected_grains(s)}, {"groups", Json::array()}};
+    for (std::size_t q = 0; q < s.grains.groups.size(); ++q) {
+        double least = std::numeric_limits<double>::infinity(), largest = 0.0, mass = 0.0;
+        std::int64_t count = 0;
+        for (std::size_t k = 0; k < g.size(); ++k) {
+            if (static_cast<std::size_t>(g.group[k]) != q) continue;
+            ++count;
+            mass += g.mass[k];
+            least = std::min(least, 2.0 * g.radius[k]);
+            largest = std::max(largest, 2.0 * g.radius[k]);
+        }
+        Json group{{"name", s.grains.groups[q].name}, {"count", count}, {"density", s.grains.groups[q].density}};
+        if (count > 0) group.update({{"diameter", {least, largest}}, {"mass", mass}});
+        part["groups"].push_back(group);
+    }
+    const double volume = s.grains.domain.size.prod();
+    double filled = 0.0;
+    for (const double r : g.radius) filled += sphere_volume(2.0 * r);
+    part["volume_fraction"] = filled / volume;
+    return part;
+}
+
+Json step_part(const Simulation& s) {
+    const Timing& t = s.timing;
+    Json part{{"step", t.dt}, {"ruling_limit", t.ruling}, {"limits", Json::object()}};
+    for (const StepLimit& limit : t.limits)
+        part["limits"][limit.name] = {{"seconds", limit.seconds}, {"formula", limit.formula}};
+    part["steps"] = total_steps(t);
+    part["steps_per_output"] = t.steps_per_output;
+    part["outputs"] = t.outputs + 1;
+    part["contact_law"] =
+        std::visit([](const auto& pairs) { return law_name(ContactLaw(pairs.laws.front())); }, s.grains.contact.contact);
+    return part;
+}
+
+Json fluid_part(const Simulation& s) {
+    Json part{{"drag", law_name(s.fluid->drag)}, {"flow", law_name(s.fluid->flow)}, {"grains", Json::array()}};
+    for (const GrainNumbers& n : grain_numbers(s))
+        part["grains"].push_back({{"group", n.group},
+                                  {"diameter", n.diameter},
+                                  {"density_ratio", n.density_ratio},
+                                  {"tau_p", n.tau_p},
+                                  {"terminal_velocity", n.terminal_velocity},
+                                  {"Re", n.re},
+                                  {"drag_law_in_range", n.drag_in_range},
+                                  {"St_impact", n.st_impact},
+                                  {"St_flow", n.st_flow},
+                                  {"Ga", n.galileo},
+                                  {"step_over_tau_p", s.timing.dt / n.tau_p}});
+    return part;
+}
+
+Json cost_part(const Run& run) {
+    const Simulation& s = run.simulation;
+    const double n = most_grains(s), steps = static_cast<double>(total_steps(s.timing));
+    const double pairs = contactless(s.grains.contact) ? 0.0 : pairs_per_grain * n;
+    double series = 0.0;
+    for (const Probe& probe : run.probes)
+        series += 8.0 * (1.0 + static_cast<double>(probe.width)) * (steps / static_cast<double>(probe.steps) + 1.0);
+    const double rate = s.fluid ? fluid_rate : contact_rate;
+    const double parallel = n > static_cast<double>(parallel_chunk) ? thread_count() : 1.0;
+    return {{"grain_steps", n * steps},
+            {"memory_bytes", bytes_of_program + bytes_per_grain * n + bytes_per_pair * pairs + series},
+            {"wall_s", steps * (step_cost + n / (rate * parallel))},
+            {"nominal_rate", rate},
+            {"threads", thread_count()}};
+}
+
+Json remarks_part(const std::vector<Remark>& remarks) {
+    Json part = Json::array();
+    for (const Remark& remark : remarks) part.push_back({{"model", remark.model}, {"reason", remark.reason}});
+    return part;
+}
+
+Json report(const Run& run) {
+    Json all{{"scene", run.scene.path}, {"scene_hash", run.scene.hash}};
+    all["grains"] = grains_part(run.simulation);
+    all["time"] = step_part(run.simulation);
+    if (run.simulation.fluid) all["fluid"] = fluid_part(run.simulation);
+    all["probes"] = run.probes.size();
+    all["cost"] = cost_part(run);
+    all["missing"] = remarks_part(missing_models(run.simulation));
+    all["idle"] = remarks_part(idle_models(run.simulation));
+    return all;
+}
+
+std::string seconds(const Json& value) {
+    const double s = value.get<double>();
+    return std::isfinite(s) ? fmt::format("{:.4g} s", s) : "none";
+}
+
+void print_grains(const Json& part, std::string& text) {
+    text += fmt::format("grains          {}", part["count"].get<std::int64_t>());
+    if (part["injected_at_most"] > 0.0) text += fmt::format(" + up to {} injected", part["injected_at_most"].get<double>());
+    text += fmt::format(", volume fraction {:.4g}\n", part["volume_fraction"].get<double>());
+    for (const Json& g : part["groups"]) {
+        text += fmt::format("  {:<14}{} of {} kg/m3", g["name"].get<std::string>(), g["count"].get<std::int64_t>(),
+                            g["density"].get<double>());
+        if (g.contains("diameter"))
+            text += fmt::format(", d = {:.4g} to {:.4g} m, {:.4g} kg in all", g["diameter"][0].get<double>(),
+                                g["diameter"][1].get<double>(), g["mass"].get<double>());
+        text += "\n";
+    }
+}
+
+void print_time(const Json& part, std::string& text) {
+    text += fmt::format("step            {:.6g} s, ruled by {}; {} steps, {} per output, {} outputs\n",
+                        part["step"].get<double>(), part["ruling_limit"].get<std::string>(),
+                        part["steps"].get<std::int64_t>(), part["steps_per_output"].get<std::int64_t>(),
+                        part["outputs"].get<std::int64_t>());
+    for (const auto& [name, limit] : part["limits"].items())
+        text += fmt::format("  {:<14}{} ({})\n", name, seconds(limit["seconds"]), limit["formula"].get<std::string>());
+    text += fmt::format("contact law     {}\n", part["contact_law"].get<std::string>());
+}
+
+void print_fluid(const Json& part, std::string& text) {
+    text += fmt::format("fluid           flow {}, drag {}\n", part["flow"].get<std::string>(),
+                        part["drag"].get<std::string>());
+    for (const Json& g : part["grains"])
+        text += fmt::format("  {:<14}d = {:.4g} m: tau_p = {:.4g} s (step/tau_p = {:.3g}), u_t = {:.4g} m/s, Re = {:.4g}{}, "
+                            "St = {:.4g} at impact, {:.4g} in the flow, Ga = {:.4g}, density ratio {:.4g}\n",
+                            g["group"].get<std::string>(), g["diameter"].get<double>(), g["tau_p"].get<double>(),
+                            g["step_over_tau_p"].get<double>(), g["terminal_velocity"].get<double>(),
+                            g["Re"].get<double>(), g["drag_law_in_range"].get<bool>() ? "" : " (outside the law's range)",
+                            g["St_impact"].get<double>(), g["St_flow"].get<double>(), g["Ga"].get<double>(),
+                            g["density_ratio"].get<double>());
+}
+
+void print_remarks(const Json& part, std::string_view title, std::string& text) {
+    text += fmt::format("{:<16}{}\n", title, part.empty() ? "none" : "");
+    for (const Json& r : part)
+        text += fmt::format("  {:<14}{}\n", r["model"].get<std::string>(), r["reason"].get<std::string>());
+}
+
+} // namespace
+
+std::string check_report(const Run& run, bool json) {
+    const Json all = report(run);
+    if (json) return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    std::string text = fmt::format("scene           {} ({})\n", run.scene.path, run.scene.hash);
+    print_grains(all["grains"], text);
+    print_time(all["time"], text);
+    if (all.contains("fluid")) print_fluid(all["fluid"], text);
+    const Json& cost = all["cost"];
+    text += fmt::format("cost            about {:.3g} grain steps, {:.3g} MB, {:.3g} s at a nominal {:.2g} grain-steps/s a thread\n",
+                        cost["grain_steps"].get<double>(), 1e-6 * cost["memory_bytes"].get<double>(),
+                        cost["wall_s"].get<double>(), cost["nominal_rate"].get<double>());
+    print_remarks(all["missing"], "could matter", text);
+    print_remarks(all["idle"], "idle", text);
+    return text;
+}
+
+} // namespace plumb

@@ -1,0 +1,287 @@
+#include "run/checkpoint.hpp"
+
+#include "core/errors.hpp"
+#include "run/hdf5_file.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <type_traits>
+
+namespace plumb {
+
+namespace {
+
+constexpr std::int64_t format_version = 1; // to be raised with every change of the layout or of what it means
+constexpr const char* format_name = "plumb checkpoint";
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double), "fields of vectors are written as they lie in memory");
+
+void write_field(Hdf5Writer& file, const std::string& name, const std::vector<Vec3>& field) {
+    const auto* numbers = reinterpret_cast<const double*>(field.data());
+    file.write(name, std::span(numbers, 3 * field.size()), {field.size(), 3});
+}
+template <class T>
+void write_field(Hdf5Writer& file, const std::string& name, const std::vector<T>& field) {
+    file.write(name, field);
+}
+
+void write_contacts(Hdf5Writer& file, const GrainSystem& system) {
+    std::vector<std::int32_t> ids;
+    std::vector<double> values;
+    const std::vector<RememberedContact> pairs = remembered_contacts(system.neighbours, system.grains);
+    for (const RememberedContact& c : pairs) {
+        ids.insert(ids.end(), {c.first, c.second});
+        values.insert(values.end(), c.stretch.begin(), c.stretch.end());
+    }
+    file.write("contacts/ids", std::span<const std::int32_t>(ids), {pairs.size(), 2});
+    file.write("contacts/stretch", std::span<const double>(values), {pairs.size(), 6});
+    ids.clear();
+    values.clear();
+    const std::vector<WallContact> walls = all_wall_contacts(system.wall_contacts);
+    for (const WallContact& c : walls) {
+        ids.insert(ids.end(), {c.grain, c.wall, c.element});
+        values.insert(values.end(), c.stretch.begin(), c.stretch.end());
+        values.insert(values.end(), c.force.begin(), c.force.end());
+        values.insert(values.end(), c.torque.begin(), c.torque.end());
+        values.push_back(c.overlap);
+    }
+    file.write("wall_contacts/ids", std::span<const std::int32_t>(ids), {walls.size(), 3});
+    file.write("wall_contacts/values", std::span<const double>(values), {walls.size(), 13});
+}
+
+void write_fluid(Hdf5Writer& file, const FluidOnGrains& fluid) {
+    const std::size_t width = fluid.forcing.memory_size;
+    const std::size_t rows = width == 0 ? 0 : fluid.forcing.memory.size() / width;
+    file.write("fluid/memory", std::span<const double>(fluid.forcing.memory), {rows, width});
+    write_field(file, "fluid/last_drag", fluid.last_drag);
+    write_field(file, "fluid/last_fluid_force", fluid.last_fluid_force);
+    file.write("fluid/re_range", std::vector<double>{fluid.range_use.re_min, fluid.range_use.re_max});
+    file.write("fluid/range_use", std::vector<std::int64_t>{fluid.range_use.inside, fluid.range_use.outside});
+}
+
+void write_outputs(Hdf5Writer& file, const Run& run) {
+    for (const Probe& probe : run.probes) {
+        file.write("series/" + probe.name + "/time", probe.time);
+        file.write("series/" + probe.name + "/value", probe.value);
+    }
+    std::vector<std::int64_t> grains;
+    std::vector<double> times;
+    for (const SnapshotEntry& s : run.snapshots) {
+        grains.push_back(static_cast<std::int64_t>(s.grains));
+        times.push_back(s.time);
+    }
+    file.write("snapshots/grains", grains);
+    file.write("snapshots/time", times);
+}
+
+void write_provenance(Hdf5Writer& file, const Run& run, const Cost& cost) {
+    nlohmann::json j;
+    j["text"] = run.scene.text;
+    j["hash"] = run.scene.hash;
+    j["path"] = run.scene.path;
+    j["folder"] = run.scene.folder;
+    j["overrides"] = run.scene.overrides;
+    j["start"] = run.start;
+    for (const SnapshotEntry& s : run.snapshots) j["snapshots"].push_back(s.file);
+    file.write_bytes("provenance/run", j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    file.write("provenance/cost",
+               std::vector<double>{cost.wall_s, cost.cpu_s, static_cast<double>(cost.peak_bytes), cost.updates});
+}
+
+/// Reads one checkpoint; everything that does not fit together is damage.
+class Loader {
+  public:
+    explicit Loader(const std::string& path) : file_(path) {
+        if (!file_.has_attribute("/", "format") || file_.text("/", "format") != format_name)
+            fail("is no plumb checkpoint");
+        const std::int64_t version = file_.integer("/", "format_version");
+        if (version != format_version)
+            throw InputError(fmt::format("{}: checkpoint of format {}; this program reads format {}", path, version,
+                                         format_version));
+    }
+    Run load();
+
+  private:
+    [[noreturn]] void fail(const std::string& what) const { throw IoError(fmt::format("{}: {}", file_.path(), what)); }
+    void demand(bool holds, const char* what) const {
+        if (!holds) fail(fmt::format("is damaged: {}", what));
+    }
+    std::vector<std::int64_t> integers(const std::string& name, std::size_t count) const {
+        std::vector<std::int64_t> values = file_.integers(name);
+        demand(values.size() == count, name.c_str());
+        return values;
+    }
+    std::vector<double> doubles(const std::string& name, std::size_t count) const {
+        std::vector<double> values = file_.doubles(name);
+        demand(values.size() == count, name.c_str());
+        return values;
+    }
+    std::int32_t index(std::int64_t value, std::size_t count, const char* what) const {
+        demand(value >= 0 && value < static_cast<std::int64_t>(count), what);
+        return static_cast<std::int32_t>(value);
+    }
+    template <class T>
+    void read_field(const std::string& name, std::vector<T>& field, std::size_t n) const;
+    void load_grains(GrainSystem& system) const;
+    std::vector<RememberedContact> pairs(std::size_t n) const;
+    std::vector<WallContact> walls(std::size_t n, std::size_t walls) const;
+    void load_fluid(FluidOnGrains& fluid, std::size_t n) const;
+    void load_outputs(Run& run, const nlohmann::json& saved) const;
+
+    Hdf5Reader file_;
+};
+
+template <class T>
+void Loader::read_field(const std::string& name, std::vector<T>& field, std::size_t n) const {
+    field.resize(n);
+    if constexpr (std::is_same_v<T, Vec3>) {
+        const std::vector<double> values = doubles(name, 3 * n);
+        for (std::size_t k = 0; k < n; ++k) field[k] = Vec3(values[3 * k], values[3 * k + 1], values[3 * k + 2]);
+    } else if constexpr (std::is_same_v<T, std::int32_t>) {
+        const std::vector<std::int64_t> values = integers(name, n);
+        for (std::size_t k = 0; k < n; ++k) field[k] = static_cast<std::int32_t>(values[k]);
+    } else {
+        field = doubles(name, n);
+    }
+}
+
+void Loader::load_grains(GrainSystem& system) const {
+    const std::size_t n = file_.shape("grains/id").at(0);
+    for_each_field(system.grains, [&](const char* name, auto& field) {
+        read_field(fmt::format("grains/{}", name), field, n);
+    });
+    std::vector<bool> seen(n, false);
+    for (const std::int32_t id : system.grains.id) {
+        const auto k = static_cast<std::size_t>(index(id, n, "grains/id"));
+        demand(!seen[k], "grains/id");
+        seen[k] = true;
+    }
+    for (const std::int32_t group : system.grains.group) index(group, system.groups.size(), "grains/group");
+    for (std::size_t q = 0; q < system.injectors.size(); ++q)
+        system.injected[q].count = integers(fmt::format("injectors/{}", q), system.injectors[q].points.size());
+    restore_lists(system, pairs(n), walls(n, system.walls.size()));
+}
+
+std::vector<RememberedContact> Loader::pairs(std::size_t n) const {
+    const std::size_t count = file_.shape("contacts/ids").at(0);
+    const std::vector<std::int64_t> ids = integers("contacts/ids", 2 * count);
+    const std::vector<double> stretch = doubles("contacts/stretch", 6 * count);
+    std::vector<RememberedContact> memory(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        memory[k].first = index(ids[2 * k], n, "contacts/ids");
+        memory[k].second = index(ids[2 * k + 1], n, "contacts/ids");
+        std::copy_n(stretch.begin() + static_cast<std::ptrdiff_t>(6 * k), 6, memory[k].stretch.begin());
+    }
+    return memory;
+}
+
+std::vector<WallContact> Loader::walls(std::size_t n, std::size_t walls) const {
+    const std::size_t count = file_.shape("wall_contacts/ids").at(0);
+    const std::vector<std::int64_t> ids = integers("wall_contacts/ids", 3 * count);
+    const std::vector<double> values = doubles("wall_contacts/values", 13 * count);
+    std::vector<WallContact> memory(count);
+    for (std::size_t k = 0; k < count; ++k) {
+        WallContact& c = memory[k];
+        c.grain = index(ids[3 * k], n, "wall_contacts/ids");
+        c.wall = index(ids[3 * k + 1], walls, "wall_contacts/ids");
+        c.element = static_cast<std::int32_t>(ids[3 * k + 2]);
+        const double* v = values.data() + 13 * k;
+        std::copy_n(v, 6, c.stretch.begin());
+        c.force = Vec3(v[6], v[7], v[8]);
+        c.torque = Vec3(v[9], v[10], v[11]);
+        c.overlap = v[12];
+    }
+    return memory;
+}
+
+void Loader::load_fluid(FluidOnGrains& fluid, std::size_t n) const {
+    const Shape memory = file_.shape("fluid/memory");
+    demand(memory.size() == 2 && (memory[1] == 0 || memory[0] == n), "fluid/memory");
+    fluid.forcing.memory = file_.doubles("fluid/memory");
+    fluid.forcing.memory_size = memory[1];
+    read_field("fluid/last_drag", fluid.last_drag, n);
+    read_field("fluid/last_fluid_force", fluid.last_fluid_force, n);
+    const std::vector<double> re = doubles("fluid/re_range", 2);
+    const std::vector<std::int64_t> use = integers("fluid/range_use", 2);
+    fluid.range_use.re_min = re[0], fluid.range_use.re_max = re[1];
+    fluid.range_use.inside = use[0], fluid.range_use.outside = use[1];
+}
+
+void Loader::load_outputs(Run& run, const nlohmann::json& saved) const {
+    for (Probe& probe : run.probes) {
+        probe.time = file_.doubles("series/" + probe.name + "/time");
+        probe.value = doubles("series/" + probe.name + "/value", probe.width * probe.time.size());
+    }
+    const std::vector<std::int64_t> grains = file_.integers("snapshots/grains");
+    const std::vector<double> times = doubles("snapshots/time", grains.size());
+    if (grains.empty()) return;
+    const auto& names = saved.at("snapshots");
+    demand(names.size() == grains.size(), "snapshots");
+    for (std::size_t k = 0; k < grains.size(); ++k)
+        run.snapshots.push_back({names.at(k).get<std::string>(), times[k], static_cast<std::size_t>(grains[k])});
+}
+
+Run Loader::load() {
+    const nlohmann::json saved = nlohmann::json::parse(file_.bytes("provenance/run"), nullptr, false);
+    demand(!saved.is_discarded(), "provenance/run");
+    Scene scene = scene_from_text(saved.at("text").get<std::string>(), saved.at("path").get<std::string>(),
+                                  saved.at("folder").get<std::string>());
+    demand(scene.hash == saved.at("hash").get<std::string>(), "the scene");
+    scene.overrides = saved.at("overrides").get<std::vector<std::string>>();
+    Run run = make_run(std::move(scene));
+    run.start = saved.at("start").get<std::string>();
+    const std::vector<double> cost = doubles("provenance/cost", 4);
+    run.cost = {cost[0], cost[1], static_cast<std::int64_t>(cost[2]), cost[3]};
+
+    const double dt = file_.number("/", "dt");
+    if (dt != run.simulation.timing.dt)
+        throw InputError(fmt::format("{}: was made with steps of {:.17g} s, but the scene now gives {:.17g} s; files "
+                                     "that the scene names, or the program, have changed",
+                                     file_.path(), dt, run.simulation.timing.dt));
+    GrainSystem& system = run.simulation.grains;
+    system.step = file_.integer("/", "step");
+    system.time = static_cast<double>(system.step) * dt;
+    system.listed_time = file_.number("/", "listed_time");
+    load_grains(system);
+    if (run.simulation.fluid) load_fluid(*run.simulation.fluid, system.grains.size());
+    load_outputs(run, saved);
+    return run;
+}
+
+} // namespace
+
+void save_checkpoint(const std::string& path, const Run& run, const Cost& cost) {
+    const GrainSystem& system = run.simulation.grains;
+    Hdf5Writer file(path, true);
+    file.attribute("/", "format", std::string(format_name));
+    file.attribute("/", "format_version", format_version);
+    file.attribute("/", "step", system.step);
+    file.attribute("/", "time", system.time);
+    file.attribute("/", "dt", run.simulation.timing.dt);
+    file.attribute("/", "listed_time", system.listed_time);
+    for_each_field(system.grains, [&](const char* name, const auto& field) {
+        write_field(file, fmt::format("grains/{}", name), field);
+    });
+    write_contacts(file, system);
+    for (std::size_t q = 0; q < system.injected.size(); ++q)
+        file.write(fmt::format("injectors/{}", q), system.injected[q].count);
+    if (run.simulation.fluid) write_fluid(file, *run.simulation.fluid);
+    write_outputs(file, run);
+    write_provenance(file, run, cost);
+    file.finish();
+}
+
+Run load_checkpoint(const std::string& path) {
+    const auto damaged = [&](const std::exception& e) { return IoError(fmt::format("{}: is damaged: {}", path, e.what())); };
+    try {
+        return Loader(path).load();
+    } catch (const nlohmann::json::exception& e) {
+        throw damaged(e);
+    } catch (const std::out_of_range& e) {
+        throw damaged(e);
+    }
+}
+
+} // namespace plumb

@@ -1,0 +1,49 @@
+#include "run/law_list.hpp"
+
+#include "dem/arrange.hpp"
+#include "run/probes.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace plumb {
+
+std::vector<LawFamily> law_families() {
+    std::vector<LawFamily> families{{"fluid.flow", law_entries<PrescribedFlow>()},
+                                    {"grains.diameter", law_entries<DiameterLaw>()},
+                                    {"grains.velocity", law_entries<VelocityLaw>()},
+                                    {"grains.arrange", law_entries<Arrangement>()},
+                                    {"grains.contact", law_entries<ContactLaw>()},
+                                    {"grains.contact.rolling", law_entries<RollingLaw>()},
+                                    {"wall.shape", law_entries<Wall>()},
+                                    {"coupling.drag", law_entries<DragLaw>()},
+                                    {"coupling.forces", law_entries<OtherForce>()},
+                                    {"coupling.basset", law_entries<HistoryForce>()},
+                                    {"coupling.exchange", law_entries<Exchange>()},
+                                    {"coupling.porosity", law_entries<PrescribedPorosity>()},
+                                    {"probe.quantity", law_entries<ProbeQuantity>()}};
+    return families;
+}
+
+std::string law_list(bool json) {
+    if (json) {
+        nlohmann::ordered_json all;
+        for (const LawFamily& family : law_families())
+            for (const LawEntry& law : family.laws)
+                all[family.name].push_back({{"name", law.name},
+                                            {"formula", law.info.formula},
+                                            {"range", law.info.range},
+                                            {"source", law.info.source}});
+        return all.dump(2) + "\n";
+    }
+    std::string text;
+    for (const LawFamily& family : law_families()) {
+        text += fmt::format("{}{}\n", text.empty() ? "" : "\n", family.name);
+        for (const LawEntry& law : family.laws)
+            text += fmt::format("  {}\n      {}\n      range: {}\n      source: {}\n", law.name, law.info.formula,
+                                law.info.range, law.info.source);
+    }
+    return text;
+}
+
+} // namespace plumb

@@ -1,0 +1,88 @@
+#include "run/provenance.hpp"
+
+#include "core/parallel.hpp"
+#include "run/build_info.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+#include <sys/resource.h>
+
+namespace plumb {
+
+namespace {
+
+std::string processor_name() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.rfind("model name", 0) == 0) {
+            const std::size_t colon = line.find(':');
+            const std::size_t begin = line.find_first_not_of(' ', colon + 1);
+            return begin == std::string::npos ? std::string() : line.substr(begin);
+        }
+    return "unknown";
+}
+
+double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
+
+} // namespace
+
+Cost CostMeter::now() const {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    Cost cost = before_;
+    cost.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    cost.cpu_s += seconds(usage.ru_utime) + seconds(usage.ru_stime);
+    cost.peak_bytes = std::max<std::int64_t>(cost.peak_bytes, 1024 * std::int64_t{usage.ru_maxrss}); // Linux counts KiB
+    return cost;
+}
+
+std::string iso_time() {
+    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+std::string version_text() {
+    const std::string commit(build_info::commit.empty() ? "no commit" : build_info::commit.substr(0, 12));
+    return fmt::format("plumb {} ({}{}, {})", build_info::version, commit, build_info::dirty ? ", changed" : "",
+                       build_info::compiler);
+}
+
+std::string provenance_json(const Scene& scene, const Simulation& simulation, const std::string& start,
+                            const Cost& cost, std::optional<int> exit) {
+    nlohmann::ordered_json j;
+    j["version"] = build_info::version;
+    j["commit"] = build_info::commit;
+    j["dirty"] = build_info::dirty;
+    j["compiler"] = build_info::compiler;
+    j["flags"] = build_info::flags;
+    j["scene"] = scene.text;
+    j["scene_hash"] = scene.hash;
+    j["scene_path"] = scene.path;
+    j["overrides"] = scene.overrides;
+    j["threads"] = thread_count();
+    j["processor"] = processor_name();
+    j["start"] = start;
+    j["wall_s"] = cost.wall_s;
+    j["cpu_s"] = cost.cpu_s;
+    j["peak_bytes"] = cost.peak_bytes;
+    j["steps"] = simulation.grains.step;
+    j["updates"] = cost.updates;
+    j["step"] = simulation.timing.dt;
+    j["ruling_limit"] = simulation.timing.ruling;
+    j["limits"] = nlohmann::ordered_json::object(); // an infinite limit is written as null
+    for (const StepLimit& limit : simulation.timing.limits) j["limits"][limit.name] = limit.seconds;
+    if (simulation.fluid) {
+        const RangeUse& use = simulation.fluid->range_use;
+        j["drag_range"] = {{"re_min", use.re_min}, {"re_max", use.re_max}, {"inside", use.inside},
+                           {"outside", use.outside}};
+    }
+    j["exit"] = exit ? nlohmann::ordered_json(*exit) : nlohmann::ordered_json(nullptr);
+    // A path may be no valid UTF-8; JSON must be.
+    return j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+} // namespace plumb

@@ -1,0 +1,185 @@
+#include "run/result_files.hpp"
+
+#include "core/errors.hpp"
+#include "run/aside_file.hpp"
+#include "run/hdf5_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fcntl.h>
+#include <filesystem>
+#include <sys/file.h>
+#include <unistd.h>
+#include <utility>
+
+namespace plumb {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// True for a name that a run gives to a snapshot, complete or aside.
+bool is_snapshot_name(const std::string& name) {
+    const std::string stem = name.substr(0, name.find('.'));
+    const bool number = stem.size() >= 6 && stem.find_first_not_of("0123456789") == std::string::npos;
+    const std::string rest = name.substr(stem.size());
+    return (number || stem == "diverged") && (rest == ".h5" || rest == ".h5.tmp");
+}
+
+void remove_file(const fs::path& path) {
+    std::error_code error;
+    fs::remove(path, error);
+    if (error) throw IoError(fmt::format("{}: cannot be removed: {}", path.string(), error.message()));
+}
+
+/// Removes the results of an earlier run. What else is in the folder stays.
+void remove_results(const std::string& path) {
+    for (const char* name : {"checkpoint.h5", "result.xdmf", "series.h5"})
+        for (const char* ending : {"", ".tmp"}) remove_file(path + "/" + name + ending);
+    const fs::path snapshots = path + "/snapshots";
+    std::error_code error;
+    std::vector<fs::path> old;
+    for (fs::directory_iterator entry(snapshots, error), end; !error && entry != end; entry.increment(error))
+        if (is_snapshot_name(entry->path().filename().string())) old.push_back(entry->path());
+    for (const fs::path& file : old) remove_file(file);
+    fs::remove(snapshots, error); // stays if it holds something else
+    remove_file(path + "/run.json.tmp");
+    remove_file(path + "/run.json");
+}
+
+/// Numbers of a field of vectors or scalars in the order of ids.
+std::vector<double> in_id_order(const std::vector<Vec3>& field, const std::vector<std::int32_t>& place) {
+    std::vector<double> values;
+    values.reserve(3 * place.size());
+    for (const std::int32_t k : place)
+        for (Eigen::Index c = 0; c < 3; ++c) values.push_back(field[static_cast<std::size_t>(k)][c]);
+    return values;
+}
+
+template <class T>
+std::vector<T> in_id_order(const std::vector<T>& field, const std::vector<std::int32_t>& place) {
+    std::vector<T> values;
+    values.reserve(place.size());
+    for (const std::int32_t k : place) values.push_back(field[static_cast<std::size_t>(k)]);
+    return values;
+}
+
+std::string data_item(const SnapshotEntry& s, std::string_view field, std::size_t width, bool integer) {
+    const std::string shape = width == 1 ? fmt::format("{}", s.grains) : fmt::format("{} {}", s.grains, width);
+    const std::string_view type = integer ? R"(NumberType="Int" Precision="4")" : R"(NumberType="Float" Precision="8")";
+    return fmt::format("<DataItem Dimensions=\"{}\" {} Format=\"HDF\">{}:/grains/{}</DataItem>", shape, type, s.file,
+                       field);
+}
+
+std::string xdmf_grid(const SnapshotEntry& s) {
+    std::string text = fmt::format("      <Grid Name=\"grains\" GridType=\"Uniform\">\n"
+                                   "        <Time Value=\"{:.17g}\"/>\n"
+                                   "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\"/>\n"
+                                   "        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
+                                   s.time, s.grains, data_item(s, "x", 3, false));
+    for (const char* name : {"v", "omega"})
+        text += fmt::format("        <Attribute Name=\"{}\" AttributeType=\"Vector\" Center=\"Node\">{}</Attribute>\n",
+                            name, data_item(s, name, 3, false));
+    for (const char* name : {"diameter", "id", "group"})
+        text += fmt::format("        <Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">{}</Attribute>\n",
+                            name, data_item(s, name, 1, std::string_view(name) != "diameter"));
+    return text + "      </Grid>\n";
+}
+
+} // namespace
+
+void check_result_folder(const std::string& path) {
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (!fs::exists(status)) return;
+    if (!fs::is_directory(status)) throw InputError(fmt::format("{}: is a file, not a folder for results", path));
+    if (fs::exists(path + "/run.json", error)) return;
+    const bool empty = fs::is_empty(path, error);
+    if (error) throw IoError(fmt::format("{}: {}", path, error.message()));
+    if (!empty)
+        throw InputError(fmt::format("{}: the folder holds something that is no plumb result; choose another one with -o",
+                                     path));
+}
+
+ResultFolder::ResultFolder(std::string path) : path_(std::move(path)) {}
+
+ResultFolder::ResultFolder(ResultFolder&& other) noexcept
+    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+
+ResultFolder::~ResultFolder() {
+    if (lock_ >= 0) ::close(lock_);
+}
+
+void ResultFolder::lock() {
+    lock_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ < 0) fail_io(path_, "opened", errno);
+    // Only a lock held by someone counts; some file systems know no locks.
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        throw InputError(fmt::format("{}: another run is writing there", path_));
+}
+
+ResultFolder ResultFolder::fresh(const std::string& path) {
+    check_result_folder(path);
+    make_folder(path);
+    ResultFolder folder(path);
+    folder.lock();
+    remove_results(path);
+    return folder;
+}
+
+ResultFolder ResultFolder::existing(const std::string& path) {
+    if (!fs::is_directory(path)) throw InputError(fmt::format("{}: there is no such result folder", path));
+    ResultFolder folder(path);
+    folder.lock();
+    return folder;
+}
+
+std::string snapshot_name(std::int64_t output) { return fmt::format("snapshots/{:06d}.h5", output); }
+
+void write_series(const std::string& path, const std::vector<Probe>& probes) {
+    Hdf5Writer file(path);
+    for (const Probe& probe : probes) {
+        const std::string time = probe.name + "/time", value = probe.name + "/value";
+        file.write(time, probe.time);
+        file.attribute(time, "units", std::string("s"));
+        const Shape shape = probe.per_grain() ? Shape{probe.time.size(), probe.width} : Shape{probe.time.size()};
+        file.write(value, probe.value, shape);
+        file.attribute(value, "units", probe.units());
+        file.attribute(probe.name, "quantity", law_name(probe.quantity));
+    }
+    file.finish();
+}
+
+void write_snapshot(const std::string& path, const Simulation& simulation) {
+    const Grains& g = simulation.grains.grains;
+    const std::vector<std::int32_t> place = positions_of_ids(g);
+    std::vector<double> diameter = in_id_order(g.radius, place);
+    for (double& d : diameter) d *= 2.0;
+    Hdf5Writer file(path);
+    const Shape vectors{g.size(), 3};
+    file.write("grains/x", in_id_order(g.x, place), vectors);
+    file.write("grains/v", in_id_order(g.v, place), vectors);
+    file.write("grains/omega", in_id_order(g.omega, place), vectors);
+    file.write("grains/diameter", diameter);
+    file.write("grains/id", in_id_order(g.id, place));
+    file.write("grains/group", in_id_order(g.group, place));
+    for (const auto& [name, units] : {std::pair{"x", "m"}, {"v", "m/s"}, {"omega", "rad/s"}, {"diameter", "m"},
+                                      {"id", "1"}, {"group", "1"}})
+        file.attribute(fmt::format("grains/{}", name), "units", std::string(units));
+    file.attribute("/", "time", static_cast<double>(simulation.grains.step) * simulation.timing.dt);
+    file.attribute("/", "time_units", std::string("s"));
+    file.attribute("/", "step", simulation.grains.step);
+    file.finish();
+}
+
+void write_xdmf(const std::string& path, const std::vector<SnapshotEntry>& snapshots) {
+    std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
+                       "    <Grid Name=\"time\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+    for (const SnapshotEntry& s : snapshots) text += xdmf_grid(s);
+    text += "    </Grid>\n  </Domain>\n</Xdmf>\n";
+    write_text(path, text);
+}
+
+} // namespace plumb

@@ -1,0 +1,33 @@
+// One run: the scene, its simulation, its probes and what has been written so far.
+#pragma once
+
+#include "run/probes.hpp"
+#include "run/provenance.hpp"
+#include "run/result_files.hpp"
+
+#include <string>
+#include <vector>
+
+namespace plumb {
+
+struct Run {
+    Scene scene;
+    Simulation simulation;
+    std::vector<Probe> probes;
+    std::vector<SnapshotEntry> snapshots;
+    std::string start; // ISO time of the first start
+    Cost cost;         // before this process took over
+};
+
+/// Everything `scene` describes, ready for its first step. InputError for whatever cannot be meant, unread keys included.
+inline Run make_run(Scene scene) {
+    Simulation simulation = make_simulation(scene);
+    std::vector<Probe> probes = read_probes(scene, simulation);
+    scene.root.finish();
+    return {std::move(scene), std::move(simulation), std::move(probes), {}, iso_time(), {}};
+}
+
+/// Steps of the whole run.
+inline std::int64_t total_steps(const Timing& timing) { return timing.outputs * timing.steps_per_output; }
+
+} // namespace plumb

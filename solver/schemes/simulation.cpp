@@ -1,0 +1,168 @@
+#include "schemes/simulation.hpp"
+
+#include "core/errors.hpp"
+#include "dem/advance_grains.hpp"
+#include "dem/arrange.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace plumb {
+
+namespace {
+
+Domain read_domain(Table table) {
+    Domain domain;
+    domain.size = table.vector("size", positive);
+    domain.periodic = table.flags("periodic");
+    domain.gravity = table.vector("gravity");
+    return domain;
+}
+
+/// Contact tables of the groups, then of the walls, then the pairs between them.
+ContactModel read_contacts(Table& root, const GrainSystem& system, std::vector<Table>& grain_tables,
+                           std::vector<Table>& wall_tables) {
+    std::vector<std::string> names;
+    std::vector<std::optional<MaterialContact>> own;
+    for (std::size_t q = 0; q < grain_tables.size(); ++q) {
+        names.push_back(system.groups[q].name);
+        own.emplace_back(read_contact(grain_tables[q].law("contact")));
+    }
+    for (std::size_t w = 0; w < wall_tables.size(); ++w) {
+        names.push_back(system.walls[w].name);
+        if (wall_tables[w].type("contact") == toml::node_type::string &&
+            wall_tables[w].text("contact") == "as_grains")
+            own.emplace_back(std::nullopt);
+        else
+            own.emplace_back(read_contact(wall_tables[w].law("contact")));
+    }
+    std::vector<PairContact> pairs;
+    for (Table& table : root.tables("contact")) {
+        const std::vector<std::string> between = table.texts("between");
+        if (between.size() != 2) table.fail("between", "expected two names");
+        pairs.push_back({between[0], between[1], read_contact(table)});
+    }
+    return contact_model(names, own, system.groups.size(), pairs, root.file());
+}
+
+Integrator read_integrator(Table& time) {
+    return time.choice("integrator", {"velocity_verlet", "semi_implicit_euler"}) == "velocity_verlet"
+               ? Integrator::velocity_verlet
+               : Integrator::semi_implicit_euler;
+}
+
+void read_grain_system(Table& root, GrainSystem& system) {
+    system.domain = read_domain(root.table("domain"));
+    std::vector<Table> wall_tables = root.tables("wall");
+    std::vector<Table> grain_tables = root.tables("grains");
+    if (grain_tables.empty()) root.fail("grains", "missing; expected one [grains] table or several [[grains]]");
+    system.walls = make_walls(wall_tables);
+    for (std::size_t w = 0; w < system.walls.size(); ++w)
+        system.walls[w].material = static_cast<std::int32_t>(grain_tables.size() + w);
+    add_grains(system.grains, system.groups, grain_tables, system.domain, system.walls);
+    system.contact = read_contacts(root, system, grain_tables, wall_tables);
+    const bool touching = !contactless(system.contact);
+    check_start(system.grains, system.groups, grain_tables, system.domain, system.walls,
+                [touching](std::int32_t /*a*/, std::int32_t /*b*/) { return touching; });
+    for (Table& table : root.tables("injector")) {
+        system.injectors.push_back(make_injector(table, system.groups, system.domain, system.walls));
+        system.injected.push_back(nothing_injected(system.injectors.back()));
+    }
+    if (system.grains.size() == 0 && system.injectors.empty())
+        root.fail("grains", "no grains at the start and no injector");
+}
+
+/// Bound of the explicit exchange: twice the relaxation time of the grain that relaxes fastest. The other choices have
+/// none.
+StepLimit drag_limit(const FluidOnGrains& fluid, const GrainSystem& system) {
+    double fastest = 0.0; // [1/s]
+    for (std::size_t k = 0; k < system.grains.size(); ++k) {
+        const Vec3& x = system.grains.x[k];
+        const double eps = porosity_at(fluid.porosity, x, system.domain);
+        const double slip = (std::visit([&](const auto& flow) { return flow(x, 0.0); }, fluid.flow).u -
+                             system.grains.v[k]).norm();
+        fastest = std::max(fastest, system.grains.mobility[k] * drag_resistance(fluid.drag, fluid.density,
+                                                                                fluid.viscosity,
+                                                                                2.0 * system.grains.radius[k], eps,
+                                                                                slip));
+    }
+    return {"drag", fastest > 0.0 ? 2.0 / fastest : std::numeric_limits<double>::infinity(),
+            "2 tau_p, explicit exchange only"};
+}
+
+/// Forces at t = 0 for the probes, without touching the state of the run.
+void show_initial_forces(FluidOnGrains& fluid, const GrainSystem& system, double dt) {
+    FluidOnGrains copy = fluid;
+    GrainSystem now = system;
+    update_forcing(copy, now, dt);
+    fluid.last_drag = copy.last_drag;
+    for (std::size_t k = 0; k < now.grains.size(); ++k) { // no acceleration yet, hence no inertial part
+        const double added = now.grains.mobility[k] > 0.0 ? 1.0 / now.grains.mobility[k] - now.grains.mass[k] : 0.0;
+        copy.last_fluid_force[static_cast<std::size_t>(now.grains.id[k])] -= (added / dt) * now.grains.v[k];
+    }
+    fluid.last_fluid_force = copy.last_fluid_force;
+}
+
+/// Says which step limit a diverged run most likely broke.
+[[noreturn]] void name_limit(const Diverged& what, const Timing& timing) {
+    std::string blame = what.likely_limit;
+    for (const StepLimit& limit : timing.limits)
+        if (timing.dt > limit.seconds)
+            blame += fmt::format("; the step of {:.6g} s breaks the {} limit of {:.6g} s ({})", timing.dt, limit.name,
+                                 limit.seconds, limit.formula);
+    throw Diverged(what.step, what.time, what.field, what.index, what.value, blame);
+}
+
+std::size_t inject_due(GrainSystem& system) {
+    std::size_t added = 0;
+    for (std::size_t q = 0; q < system.injectors.size(); ++q)
+        added += inject(system.grains, system.injected[q], system.injectors[q], system.groups, system.domain,
+                        system.time);
+    return added;
+}
+
+void advance_one(Simulation& s) {
+    const double dt = s.timing.dt;
+    if (inject_due(s.grains) > 0 && s.fluid) set_inertia(*s.fluid, s.grains, dt);
+    start(s.grains, s.fluid ? &s.fluid->forcing : nullptr);
+    if (!s.fluid) return advance_grains(s.grains, 1, dt);
+    update_forcing(*s.fluid, s.grains, dt);
+    advance_grains(s.grains, 1, dt, &s.fluid->forcing);
+    complete_fluid_forces(*s.fluid, s.grains, dt);
+}
+
+} // namespace
+
+Simulation make_simulation(Scene& scene) {
+    Table& root = scene.root;
+    Simulation s;
+    read_grain_system(root, s.grains);
+    if (root.has("fluid")) {
+        Table fluid = root.table("fluid");
+        Table coupling = root.table("coupling");
+        s.fluid = read_fluid_on_grains(fluid, coupling);
+    }
+    Table time = root.table("time");
+    s.grains.integrator = read_integrator(time);
+    std::vector<StepLimit> limits = grain_limits(s.grains);
+    if (s.fluid && std::holds_alternative<ExplicitExchange>(s.fluid->exchange))
+        limits.push_back(drag_limit(*s.fluid, s.grains));
+    s.timing = timing(time, std::move(limits));
+    if (s.fluid) set_inertia(*s.fluid, s.grains, s.timing.dt);
+    start(s.grains);
+    if (s.fluid) show_initial_forces(*s.fluid, s.grains, s.timing.dt);
+    return s;
+}
+
+void advance(Simulation& simulation, std::int64_t steps) {
+    try {
+        if (!simulation.fluid && simulation.grains.injectors.empty())
+            return advance_grains(simulation.grains, steps, simulation.timing.dt);
+        for (std::int64_t k = 0; k < steps; ++k) advance_one(simulation);
+    } catch (const Diverged& what) {
+        name_limit(what, simulation.timing);
+    }
+}
+
+} // namespace plumb
