@@ -24,6 +24,9 @@ std::string clock_text(double seconds) {
     return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
+/// A reader that has gone away does not stop a run.
+void say(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
 } // namespace
 
 Progress::Progress(bool quiet, const Run& run)
@@ -49,21 +52,21 @@ void Progress::show(const Run& run, double updates) {
     std::string bar(bar_width, ' ');
     std::fill_n(bar.begin(), filled, '=');
     const std::string text = fmt::format("[{}] {}", bar, line(run));
-    fmt::print("\r{:<{}}", text, shown_); // what is left of a longer line is blanked
+    say(fmt::format("\r{:<{}}", text, shown_)); // what is left of a longer line is blanked
     shown_ = text.size();
     std::fflush(stdout);
 }
 
 void Progress::show_output(const Run& run) {
     if (quiet_ || terminal_) return;
-    fmt::print("{}\n", line(run));
+    say(fmt::format("{}\n", line(run)));
     std::fflush(stdout);
 }
 
 void Progress::end(const std::string& text) {
     if (quiet_) return;
-    if (shown_ > 0) fmt::print("\r{:<{}}\r", "", shown_);
-    fmt::print("{}\n", text);
+    if (shown_ > 0) say(fmt::format("\r{:<{}}\r", "", shown_));
+    say(fmt::format("{}\n", text));
     std::fflush(stdout);
 }
 

@@ -187,6 +187,7 @@ FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling) {
                     {},
                     std::nullopt,
                     make_family<Exchange>(coupling.law("exchange")),
+                    std::nullopt,
                     {},
                     {},
                     {},
@@ -204,10 +205,10 @@ FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling) {
     return f;
 }
 
-void set_inertia(const FluidOnGrains& fluid, GrainSystem& system, double dt) {
+void set_inertia(FluidOnGrains& fluid, GrainSystem& system, double dt) {
     Grains& g = system.grains;
-    std::optional<BassetKernel> kernel;
-    if (fluid.history) kernel = history_kernel(*fluid.history, dt);
+    if (fluid.history && (!fluid.kernel || fluid.kernel->step() != dt)) fluid.kernel = history_kernel(*fluid.history, dt);
+    const std::optional<BassetKernel>& kernel = fluid.kernel;
     for (std::size_t k = 0; k < g.size(); ++k) {
         if (g.mobility[k] == 0.0) continue; // fixed
         const double d = 2.0 * g.radius[k];
@@ -223,8 +224,7 @@ void set_inertia(const FluidOnGrains& fluid, GrainSystem& system, double dt) {
 void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt) {
     const Grains& g = system.grains;
     const std::size_t n = g.size();
-    std::optional<BassetKernel> kernel;
-    if (fluid.history) kernel = history_kernel(*fluid.history, dt);
+    const std::optional<BassetKernel>& kernel = fluid.kernel;
     FluidForcing& forcing = fluid.forcing;
     forcing.drive.resize(n);
     for (auto* field : {&forcing.phi0, &forcing.phi1, &forcing.phi2}) field->resize(n);

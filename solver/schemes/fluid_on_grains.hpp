@@ -31,6 +31,8 @@ struct FluidOnGrains {
     std::optional<HistoryForce> history;
     Exchange exchange;
 
+    std::optional<BassetKernel> kernel; // of `history` for the step in use: set by set_inertia
+
     // what changes in time
     FluidForcing forcing;                // by present order
     std::vector<Vec3> last_drag;         // mean drag of the last step [N], by id
@@ -42,8 +44,8 @@ struct FluidOnGrains {
 FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling);
 
 /// Gives every grain the inertia it has in the fluid: its mass, the added mass, and the part of the history force that
-/// acts like one in steps of `dt`. Needed before the first step and after grains have been added.
-void set_inertia(const FluidOnGrains& fluid, GrainSystem& system, double dt);
+/// acts like one in steps of `dt`. Needed before the first step and after grains have been added, or when dt changes.
+void set_inertia(FluidOnGrains& fluid, GrainSystem& system, double dt);
 
 /// Drive and step weights of all grains for the step of `dt` that starts now.
 void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt);

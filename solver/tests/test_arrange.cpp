@@ -1,7 +1,6 @@
 #include "dem/arrange.hpp"
 
-#include "core/errors.hpp"
-#include "dem/sphere_grid.hpp"
+#include "tests/made_grains.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -17,49 +16,6 @@
 
 namespace plumb {
 namespace {
-
-bool always(std::int32_t /*a*/, std::int32_t /*b*/) { return true; }
-
-Domain box(const Vec3& size, bool periodic) {
-    Domain domain;
-    domain.size = size;
-    domain.periodic = {periodic, periodic, periodic};
-    return domain;
-}
-
-struct Made {
-    Grains grains;
-    std::vector<GrainGroup> groups;
-};
-
-/// Grains of the [grains] tables in `text`, with walls of its [[wall]] tables; every key must be used.
-Made made(const std::string& text, const Domain& domain, const PairTouches& pair_touches = always,
-          const std::string& file = ::testing::TempDir() + "scene.toml") {
-    const auto toml = toml::parse(text);
-    Table scene(toml, "", file);
-    auto walls = scene.tables("wall"), grains = scene.tables("grains");
-    const std::vector<WallBody> bodies = make_walls(walls);
-    Made result;
-    add_grains(result.grains, result.groups, grains, domain, bodies);
-    check_start(result.grains, result.groups, grains, domain, bodies, pair_touches);
-    scene.finish();
-    return result;
-}
-
-std::string fault(const std::string& text, const Domain& domain) {
-    try {
-        made(text, domain);
-    } catch (const InputError& e) {
-        return e.what();
-    }
-    return "no error";
-}
-
-void expect_fault(const std::string& text, const Domain& domain, const std::string& part) {
-    const std::string message = fault(text, domain);
-    EXPECT_NE(message.find(part), std::string::npos) << "message: " << message << "\nexpected: " << part;
-    EXPECT_EQ(message.find('\n'), std::string::npos);
-}
 
 std::string written(const std::string& text) {
     const std::string name =
@@ -239,101 +195,6 @@ TEST(RandomPlaces, AreUniform) {
     }
 }
 
-TEST(Diameters, FollowTheirLaws) {
-    const auto diameters = [](const std::string& law) {
-        const Grains grains =
-            made("[grains]\ndensity = 2.0\ndiameter = " + law +
-                     "\noverlap = 'allow'\narrange = {law = 'lattice', kind = 'cubic', spacing = 0.05, lower = "
-                     "[0, 0, 0], upper = [1, 1, 1]}",
-                 box({1.0, 1.0, 1.0}, false))
-                .grains;
-        std::vector<double> d;
-        for (const double r : grains.radius) d.push_back(2.0 * r);
-        for (std::size_t i = 0; i < d.size(); ++i)
-            EXPECT_DOUBLE_EQ(grains.mass[i], 2.0 * std::numbers::pi / 6.0 * d[i] * d[i] * d[i]);
-        return d;
-    };
-    const auto moments = [](const std::vector<double>& d) {
-        double mean = 0.0, square = 0.0;
-        for (const double each : d) mean += each, square += each * each;
-        mean /= static_cast<double>(d.size());
-        return std::pair{mean, std::sqrt(square / static_cast<double>(d.size()) - mean * mean)};
-    };
-    const auto uniform = diameters("{law = 'uniform', minimum = 1e-3, maximum = 3e-3, seed = 1}"); // 8000 draws
-    EXPECT_NEAR(moments(uniform).first, 2e-3, 4.0 * 5.8e-4 / std::sqrt(8000.0));
-    EXPECT_NEAR(moments(uniform).second, 2e-3 / std::sqrt(12.0), 2e-5);
-    const auto normal =
-        diameters("{law = 'normal', mean = 2e-3, deviation = 3e-4, minimum = 1.7e-3, maximum = 2.3e-3, seed = 1}");
-    EXPECT_NEAR(moments(normal).first, 2e-3, 1e-5);
-    // Cut at one deviation: variance 1 - 2 phi(1) / (2 Phi(1) - 1) = 0.2911 of the whole.
-    EXPECT_NEAR(moments(normal).second, 3e-4 * std::sqrt(0.2911), 5e-6);
-    EXPECT_GE(*std::min_element(normal.begin(), normal.end()), 1.7e-3);
-    EXPECT_LE(*std::max_element(normal.begin(), normal.end()), 2.3e-3);
-    EXPECT_EQ(diameters("{law = 'equal', value = 1e-3}"), diameters("1e-3"));
-}
-
-TEST(Diameters, RefuseNonsense) {
-    const Domain domain = box({1.0, 1.0, 1.0}, false);
-    const auto with = [](const std::string& law) {
-        return "[grains]\ndensity = 1.0\narrange = {law = 'single', position = [0, 0, 0]}\ndiameter = " + law;
-    };
-    expect_fault(with("0.0"), domain, "grains.diameter");
-    expect_fault(with("-1e-3"), domain, "grains.diameter");
-    expect_fault(with("nan"), domain, "not finite");
-    expect_fault(with("'uniform'"), domain, "missing");
-    expect_fault(with("{law = 'uniform', minimum = 2.0, maximum = 1.0, seed = 1}"), domain, "not above minimum");
-    expect_fault(with("{law = 'normal', mean = 3.0, deviation = 0.1, minimum = 1.0, maximum = 2.0, seed = 1}"), domain,
-                 "outside [minimum, maximum]");
-    expect_fault(with("{law = 'normal', mean = 1.5, deviation = 2.0, minimum = 1.0, maximum = 2.0, seed = 1}"), domain,
-                 "use the law \"uniform\"");
-    expect_fault(with("'file'"), domain, "needs the arrangement");
-}
-
-TEST(Velocities, FollowTheirLaws) {
-    const auto velocities = [](const std::string& law) {
-        return made("[grains]\ndensity = 2.0\ndiameter = {law = 'uniform', minimum = 1e-3, maximum = 2e-3, seed = "
-                    "5}\nvelocity = " +
-                        law +
-                        "\nangular_velocity = [1, 2, 3]\narrange = {law = 'lattice', kind = 'cubic', spacing = 0.05, "
-                        "lower = [0, "
-                        "0, 0], upper = [1, 1, 1]}",
-                    box({1.0, 1.0, 1.0}, false))
-            .grains;
-    };
-    const Grains same = velocities("[1, 2, -3]");
-    EXPECT_EQ(same.v[17], Vec3(1, 2, -3));
-    EXPECT_EQ(same.omega[17], Vec3(1, 2, 3));
-    const Grains uniform = velocities("{law = 'uniform_random', speed = 0.5, seed = 5}");
-    const Grains maxwell = velocities("{law = 'maxwell', speed = 0.5, seed = 5}");
-    Vec3 momentum = Vec3::Zero(), scale = Vec3::Zero();
-    double uniform_sq = 0.0, maxwell_sq = 0.0, fourth = 0.0;
-    for (std::size_t i = 0; i < 8000; ++i) {
-        EXPECT_LE(uniform.v[i].cwiseAbs().maxCoeff(), 0.5);
-        uniform_sq += uniform.v[i].squaredNorm() / 24000.0;
-        maxwell_sq += maxwell.v[i].squaredNorm() / 24000.0;
-        fourth += maxwell.v[i].array().square().square().sum() / 24000.0;
-        momentum += maxwell.mass[i] * maxwell.v[i];
-        scale += maxwell.mass[i] * maxwell.v[i].cwiseAbs();
-    }
-    EXPECT_NEAR(uniform_sq, 0.25 / 3.0, 0.02 * 0.25 / 3.0);
-    EXPECT_NEAR(maxwell_sq, 0.25, 0.04 * 0.25); // four standard errors, sqrt(2/24000)
-    EXPECT_NEAR(fourth / (maxwell_sq * maxwell_sq), 3.0, 0.15);
-    for (Eigen::Index c = 0; c < 3; ++c) EXPECT_LE(std::abs(momentum[c]), 1e-15 * scale[c]);
-}
-
-TEST(Streams, OfDifferentPurposeAreIndependent) {
-    Random a = random_stream(1, Stream::diameters), b = random_stream(1, Stream::velocities),
-           c = random_stream(2, Stream::diameters);
-    double ab = 0.0, ac = 0.0;
-    for (int i = 0; i < 10000; ++i) {
-        const double x = a.uniform(-1.0, 1.0);
-        ab += 3.0 * x * b.uniform(-1.0, 1.0) / 10000.0;
-        ac += 3.0 * x * c.uniform(-1.0, 1.0) / 10000.0;
-    }
-    EXPECT_LT(std::abs(ab), 0.04);
-    EXPECT_LT(std::abs(ac), 0.04);
-}
-
 TEST(FilePlaces, ReadPositionsSizesAndVelocities) {
     const Domain domain = box({1.0, 1.0, 1.0}, true);
     const std::string name = written("x [m],y [m],z [m],diameter [m],vx [m/s],vy [m/s],vz [m/s]\n"
@@ -383,82 +244,6 @@ TEST(GrainTables, AreStrict) {
     expect_fault("[grains]\n" + rest + "motion = 'block'\nvelocity = {law = 'maxwell', speed = 1.0, seed = 1}", domain,
                  "one velocity");
     expect_fault("[grains]\n" + rest + "overlap = 'maybe'", domain, "not one of");
-}
-
-TEST(CheckStart, GrainsAreInsideTheDomain) {
-    const auto at = [](const std::string& position) {
-        return "[grains]\ndensity = 1.0\ndiameter = 0.1\narrange = {law = 'single', position = " + position + "}";
-    };
-    const Domain open = box({1.0, 2.0, 3.0}, false), periodic = box({1.0, 2.0, 3.0}, true);
-    EXPECT_EQ(made(at("[1.0, 2.0, 0.0]"), open).grains.size(), 1U); // on the side
-    expect_fault(at("[0.5, 2.1, 0.5]"), open,
-                 "grain 0 of group \"grains\" (id 0) at (0.5, 2.1, 0.5) m is outside the domain: y is not in [0, 2] m");
-    EXPECT_NEAR(made(at("[0.5, 2.1, 0.5]"), periodic).grains.x[0].y(), 0.1, 1e-15);
-    expect_fault("[grains]\ndensity = 1.0\ndiameter = 1.1\narrange = {law = 'single', position = [0, 0, 0]}", periodic,
-                 "larger than the periodic box along x");
-}
-
-TEST(CheckStart, GrainsAreInFrontOfWalls) {
-    const Domain domain = box({1.0, 1.0, 1.0}, false);
-    const auto at = [](double z, const std::string& more) {
-        return "[[wall]]\nname = 'floor'\nshape = 'plane'\npoint = [0, 0, 0.2]\nnormal = [0, 0, 1]\n[grains]\ndensity "
-               "= 1.0\n"
-               "diameter = 0.1\n" +
-               more + "arrange = {law = 'single', position = [0.5, 0.5, " + std::to_string(z) + "]}";
-    };
-    EXPECT_EQ(made(at(0.248, ""), domain).grains.size(), 1U); // overlap 0.04 R
-    expect_fault(at(0.247, ""), domain, "overlaps the wall \"floor\" by 0.06 of its radius");
-    expect_fault(at(0.1, ""), domain, "overlaps the wall");
-    EXPECT_EQ(made(at(0.1, "overlap = 'allow'\n"), domain).grains.size(), 1U);
-    EXPECT_EQ(made(at(0.1, "motion = 'fixed'\n"), domain).grains.size(), 1U);
-}
-
-TEST(CheckStart, OverlapOfTwoGrains) {
-    const Domain domain = box({1.0, 1.0, 1.0}, true);
-    const auto two = [](double x, const std::string& of_a, const std::string& of_b) {
-        const std::string common = "density = 1.0\narrange = {law = 'single', position = [";
-        return "[[grains]]\nname = 'a'\ndiameter = 0.1\n" + of_a + common +
-               "0.0, 0.5, 0.5]}\n[[grains]]\nname = 'b'\ndiameter = 0.2\n" + of_b + common + std::to_string(x) +
-               ", 0.5, 0.5]}";
-    };
-    // Radii 0.05 and 0.1, across the periodic side: allowed down to a distance of 0.15 - 0.0025.
-    EXPECT_EQ(made(two(0.852, "", ""), domain).grains.size(), 2U);
-    expect_fault(two(0.853, "", ""), domain,
-                 "grain 0 of group \"b\" (id 1) at (0.853, 0.5, 0.5) m overlaps grain 0 of group \"a\" (id 0)");
-    EXPECT_EQ(made(two(0.99, "overlap = 'allow'\n", ""), domain).grains.size(), 2U);
-    EXPECT_EQ(made(two(0.99, "motion = 'fixed'\n", "motion = 'fixed'\n"), domain).grains.size(), 2U);
-    expect_fault(two(0.99, "motion = 'fixed'\n", ""), domain, "overlaps");
-    expect_fault(two(0.99, "motion = 'block'\n", "motion = 'block'\n"), domain, "overlaps"); // two different blocks
-    EXPECT_EQ(made(two(0.99, "", ""), domain, [](std::int32_t, std::int32_t) { return false; }).grains.size(), 2U);
-}
-
-TEST(SphereGrid, FindsEveryOverlapThatAllPairsFind) {
-    Random random(11);
-    for (const bool periodic : {false, true})
-        for (int trial = 0; trial < 20; ++trial) {
-            const Domain domain = box({1.0, 0.3, 2.0}, periodic);
-            const double cell = random.uniform(0.01, 0.5);
-            SphereGrid grid(domain, Vec3(0.2, 0.1, 0.0), Vec3(0.8, 0.2, 1.0), cell,
-                            60); // spheres lie beyond it as well
-            std::vector<Vec3> x;
-            std::vector<double> r;
-            for (int i = 0; i < 60; ++i) {
-                const double px = random.uniform(0.0, 1.0), py = random.uniform(0.0, 0.3);
-                x.emplace_back(px, py, random.uniform(0.0, 2.0));
-                r.push_back(i % 20 == 0 ? 0.14 : random.uniform(0.005, 0.05)); // a few large ones
-                std::vector<bool> found(x.size(), false);
-                const auto k = static_cast<std::size_t>(i);
-                const auto overlap = [&](std::size_t j) {
-                    return domain.minimum_image(x[k] - x[j]).norm() < r[k] + r[j];
-                };
-                grid.any_near(x[k], r[k], [&](std::int32_t j) {
-                    found[static_cast<std::size_t>(j)] = overlap(static_cast<std::size_t>(j));
-                    return false;
-                });
-                for (std::size_t j = 0; j < k; ++j) EXPECT_EQ(found[j], overlap(j));
-                grid.insert(i, x[k], r[k]);
-            }
-        }
 }
 
 } // namespace
