@@ -214,13 +214,15 @@ bool move_grains(GrainSystem& system, double dt, const FluidForcing* forcing, bo
     return collide && std::any_of(left.begin(), left.end(), [](std::uint8_t l) { return l != 0; });
 }
 
-template <class FieldType> void reorder_if_used(FieldType& field, const std::vector<std::int32_t>& order) {
-    if (!field.empty()) reorder(field, order);
-}
-
-void reorder(FluidForcing& forcing, const std::vector<std::int32_t>& order) {
-    for (auto* field : {&forcing.phi0, &forcing.phi1, &forcing.phi2}) reorder_if_used(*field, order);
-    reorder_if_used(forcing.drive, order);
+/// The forcing in the new order of the grains. Grains that have been added since it was made stand at the end of the old
+/// order; theirs is unset, and their memory empty.
+void reorder_forcing(FluidForcing& forcing, const std::vector<std::int32_t>& order) {
+    const std::size_t n = order.size();
+    for (auto* field : {&forcing.phi0, &forcing.phi1, &forcing.phi2}) field->resize(n);
+    forcing.drive.resize(n, Vec3::Zero());
+    forcing.memory.resize(n * forcing.memory_size, 0.0);
+    for (auto* field : {&forcing.phi0, &forcing.phi1, &forcing.phi2}) reorder(*field, order);
+    reorder(forcing.drive, order);
     const std::vector<double> before = forcing.memory;
     const std::size_t size = forcing.memory_size;
     for (std::size_t k = 0; k < order.size(); ++k)
@@ -238,7 +240,7 @@ void renew_lists(GrainSystem& system, FluidForcing* forcing) {
         rebuild(list, system.grains, system.groups, system.domain, remembered_contacts(list, system.grains));
     rebuild(system.wall_contacts, system.walls, system.grains, list.skin, system.time, on_walls);
     system.listed_time = system.time;
-    if (forcing != nullptr) reorder(*forcing, order);
+    if (forcing != nullptr) reorder_forcing(*forcing, order);
     fill_records(system);
     if (records.size() != list.records.size()) return; // the first list, or grains were added: nothing predicted yet
     for (std::size_t k = 0; k < order.size(); ++k) {
@@ -281,12 +283,17 @@ void check_box(const GrainSystem& system) {
 
 void start(GrainSystem& system, FluidForcing* forcing) {
     const bool first = !system.started;
-    if (!first && system.neighbours.records.size() == system.grains.size() + 1) return;
+    Grains& g = system.grains;
+    const std::size_t listed = system.neighbours.records.size();
+    if (!first && listed == g.size() + 1) return;
+    if (!first) // added grains touch nothing yet: only gravity accelerates them
+        for (std::size_t k = listed - 1; k < g.size(); ++k)
+            g.a[k] = (g.mobility[k] * g.mass[k]) * system.domain.gravity;
     prepare_lists(system);
     if (contactless(system.contact)) { // no list: only the records' places are needed
-        system.neighbours.own.assign(system.grains.size() + 1, 0);
-        system.neighbours.incoming_begin.assign(system.grains.size() + 1, 0);
-        system.grains.x_listed = system.grains.x;
+        system.neighbours.own.assign(g.size() + 1, 0);
+        system.neighbours.incoming_begin.assign(g.size() + 1, 0);
+        g.x_listed = g.x;
         fill_records(system);
     } else {
         check_box(system);

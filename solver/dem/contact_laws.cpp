@@ -82,8 +82,10 @@ double HertzMindlin::contact_time(double inverse_mass, double inverse_radius, do
     // Half oscillation of a Hertzian contact: 2.9432 (m*^2 / (k_h^2 v))^(1/5) with f = k_h o^1.5 and the factor
     // (5/4)^(2/5) of the largest overlap; Johnson 1985, Contact mechanics, sec. 11.4.
     const double k_h = 4.0 / 3.0 * parameters.modulus / std::sqrt(inverse_radius);
-    const double overlap = std::pow(1.25 * speed * speed / (inverse_mass * k_h), 0.4);
-    return speed > 0.0 ? 2.9432 * overlap / speed : std::numeric_limits<double>::infinity();
+    const double reached = std::pow(1.25 * speed * speed / (inverse_mass * k_h), 0.4);
+    // A contact stiffens with its overlap. Grains that start at rest still press on each other: allow for 1e-3 R*.
+    const double overlap = std::max(reached, 1e-3 / inverse_radius);
+    return 2.9432 / (std::pow(overlap, 0.25) * std::sqrt(0.8 * k_h * inverse_mass));
 }
 
 } // namespace plumb

@@ -201,7 +201,8 @@ struct HertzMindlin {
 
 using ContactLaw = std::variant<NoContact, LinearSpring, LinearSpringCoulomb, HertzMindlin>;
 
-/// Shortest time of a contact [s]: half an oscillation at impact speed `speed` [m/s] (which only Hertz depends on).
+/// Shortest time of a contact [s]: half an oscillation at impact speed `speed` [m/s]. Only Hertz depends on the speed, and
+/// reckons with overlaps of 1e-3 of the reduced radius at least.
 inline double contact_time(const ContactLaw& law, double inverse_mass, double inverse_radius, double speed) {
     return std::visit([&](const auto& l) { return l.contact_time(inverse_mass, inverse_radius, speed); }, law);
 }

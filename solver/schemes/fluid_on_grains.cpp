@@ -58,6 +58,18 @@ Vec3 history_drive(const BassetKernel& kernel, double coefficient, std::span<dou
                     kernel.implicit_coefficient(coefficient) * slip_change_of_fluid);
 }
 
+/// The same for grain k, which sees `local` at the middle of the step; zero without a history force.
+Vec3 history_of_grain(FluidOnGrains& f, const GrainSystem& system, const BassetKernel* kernel, std::size_t k,
+                      const LocalFluid& local, double dt) {
+    if (kernel == nullptr) return Vec3::Zero();
+    const Grains& g = system.grains;
+    const LocalFluid now = local_fluid(f, system.domain, g.x[k], system.time);
+    const Vec3 change_of_fluid = dt * (local.acceleration + local.gradient * (g.v[k] - local.u)); // along its path
+    return history_drive(*kernel, basset_coefficient(f.density, f.viscosity, 2.0 * g.radius[k]),
+                         {f.forcing.memory.data() + k * f.forcing.memory_size, f.forcing.memory_size}, now.u - g.v[k],
+                         change_of_fluid);
+}
+
 /// Sum of the forces that do not depend on the rate of drag [N].
 Vec3 other_forces(const FluidOnGrains& f, const LocalFluid& local, const LocalGrain& grain, const Vec3& gravity) {
     Vec3 sum = Vec3::Zero();
@@ -74,14 +86,7 @@ OneForcing forcing_of_grain(FluidOnGrains& f, const GrainSystem& system, const B
     OneForcing one;
     one.u = local.u;
     one.eps = local.eps;
-    Vec3 history = Vec3::Zero();
-    if (kernel != nullptr) {
-        const LocalFluid now = local_fluid(f, system.domain, g.x[k], system.time);
-        const Vec3 change_of_fluid = dt * (local.acceleration + local.gradient * (v - local.u)); // along the grain's path
-        history = history_drive(*kernel, basset_coefficient(f.density, f.viscosity, d),
-                                {f.forcing.memory.data() + k * f.forcing.memory_size, f.forcing.memory_size},
-                                now.u - v, change_of_fluid);
-    }
+    const Vec3 history = history_of_grain(f, system, kernel, k, local, dt);
     const auto rate = [&](double slip) {
         return mobility * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip);
     };
@@ -147,7 +152,8 @@ void write_forcing(FluidOnGrains& f, const GrainSystem& system, std::size_t k, c
 }
 
 /// A fixed grain does not respond, but it feels the fluid: the forces are those at its given velocity.
-OneForcing write_fixed(FluidOnGrains& f, const GrainSystem& system, std::size_t k, double dt) {
+OneForcing write_fixed(FluidOnGrains& f, const GrainSystem& system, const BassetKernel* kernel, std::size_t k,
+                       double dt) {
     const Grains& g = system.grains;
     f.forcing.phi0[k] = f.forcing.phi1[k] = 1.0;
     f.forcing.phi2[k] = 0.5;
@@ -157,7 +163,8 @@ OneForcing write_fixed(FluidOnGrains& f, const GrainSystem& system, std::size_t 
     const Vec3 slip = local.u - g.v[k];
     const auto id = static_cast<std::size_t>(g.id[k]);
     f.last_drag[id] = drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip.norm()) * slip;
-    f.last_fluid_force[id] = f.last_drag[id] + other_forces(f, local, {d, g.v[k]}, system.domain.gravity);
+    f.last_fluid_force[id] = f.last_drag[id] + other_forces(f, local, {d, g.v[k]}, system.domain.gravity) +
+                             history_of_grain(f, system, kernel, k, local, dt);
     OneForcing one;
     one.re = f.density * d * local.eps * slip.norm() / f.viscosity;
     one.eps = local.eps;
@@ -198,8 +205,14 @@ FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling) {
         if (name == "basset")
             f.history = make_family<HistoryForce>(coupling.law("basset"));
         else {
-            Table law(toml::table{{"law", name}}, coupling.path() + ".forces", coupling.file());
-            f.forces.push_back(make_family<OtherForce>(law));
+            const std::vector<LawEntry> known = law_entries<OtherForce>();
+            if (std::none_of(known.begin(), known.end(), [&](const LawEntry& law) { return law.name == name; })) {
+                std::string names = "\"basset\"";
+                for (const LawEntry& law : known) names += fmt::format(", \"{}\"", law.name);
+                coupling.fail("forces", fmt::format("\"{}\" is not one of {}", name, names));
+            }
+            f.forces.push_back(make_family<OtherForce>(
+                Table(toml::table{{"law", name}}, coupling.path() + ".forces", coupling.file())));
         }
     }
     return f;
@@ -234,8 +247,9 @@ void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt) {
     fluid.last_fluid_force.resize(n);
     std::vector<OneForcing> own(n);
     parallel_for(n, [&](std::size_t k) {
-        own[k] = g.mobility[k] == 0.0 ? write_fixed(fluid, system, k, dt)
-                                      : forcing_of_grain(fluid, system, kernel ? &*kernel : nullptr, k, dt);
+        const BassetKernel* history = kernel ? &*kernel : nullptr;
+        own[k] = g.mobility[k] == 0.0 ? write_fixed(fluid, system, history, k, dt)
+                                      : forcing_of_grain(fluid, system, history, k, dt);
     });
     std::vector<OneForcing> shared = own;
     share_in_blocks(system, shared);

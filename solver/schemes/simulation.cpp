@@ -142,6 +142,9 @@ Simulation make_simulation(Scene& scene) {
         Table fluid = root.table("fluid");
         Table coupling = root.table("coupling");
         s.fluid = read_fluid_on_grains(fluid, coupling);
+        const auto* linear = std::get_if<LinearPorosity>(&s.fluid->porosity);
+        if (linear != nullptr && s.grains.domain.periodic[static_cast<std::size_t>(linear->axis)])
+            coupling.fail("porosity", "a linear porosity would jump at the periodic side it runs towards");
     }
     Table time = root.table("time");
     s.grains.integrator = read_integrator(time);

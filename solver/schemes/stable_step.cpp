@@ -19,6 +19,7 @@ double impact_speed(const GrainSystem& system) {
     double fastest = 0.0;
     for (const Vec3& v : system.grains.v) fastest = std::max(fastest, v.norm());
     for (const WallBody& wall : system.walls) fastest = std::max(fastest, wall.velocity.norm());
+    for (const Injector& injector : system.injectors) fastest = std::max(fastest, injector.velocity.norm());
     const double fall = std::sqrt(2.0 * system.domain.gravity.cwiseAbs().dot(system.domain.size));
     return 2.0 * fastest + fall;
 }
