@@ -189,7 +189,8 @@ def verdict(final):
         f"{per_cent[0][0]:.1f} % and {per_cent[1][1]} {per_cent[1][0]:.1f} %; without the 0.5 mm sphere, whose diameter is "
         f"known to one digit, {without[0][1]} has {without[0][0]:.1f} % and {without[1][1]} {without[1][0]:.1f} %. "
         "Published means another group's simulation, not truth. "
-        "95 % times: drag only / with virtual mass / with virtual mass and Basset's force."
+        "95 % times: drag only / with virtual mass / with virtual mass and Basset's force. Stokes' row holds the speeds at "
+        "1.5 s, when the larger spheres are still far from Stokes' terminal speed."
     )
 
 

@@ -52,7 +52,9 @@ Table::Table(const toml::table& table, std::string path, std::string file)
       read_(std::make_shared<Read>()) {}
 
 void Table::fail(std::string_view key, std::string_view what) const {
-    throw InputError(fmt::format("{}: {}: {}", file_, joined(path_, key), what));
+    std::string line = fmt::format("{}: {}: {}", file_, joined(path_, key), what);
+    for (std::size_t at = 0; (at = line.find('\n', at)) != std::string::npos;) line.replace(at, 1, "\\n");
+    throw InputError(line); // one line, whatever the value or the key holds
 }
 
 bool Table::has(std::string_view key) const { return table_->contains(key); }
@@ -207,8 +209,7 @@ std::vector<Table> Table::tables(std::string_view key) {
 void Table::finish() const {
     for (const auto& [key, node] : *table_)
         if (!read_->keys.count(key.str()))
-            throw InputError(fmt::format("{}: {}: unknown key (value {}), or one that this scene does not use", file_,
-                                         joined(path_, key.str()), shown(node)));
+            fail(key.str(), fmt::format("unknown key (value {}), or one that this scene does not use", shown(node)));
     for (const Table& sub : read_->children) sub.finish();
 }
 

@@ -100,7 +100,8 @@ struct StepFunctions {
     const HalfPack x = load3(g.x[k].data()) + moved;
     store3(g.x[k].data(), x);
     write_record(system.neighbours, k, x, predicted, g.radius[k] * omega);
-    return dot3(moved, moved);
+    // A spin that is not a number would only show in the next contact; here it spoils the sum and is found.
+    return dot3(moved, moved) + 0.0 * dot3(omega, omega);
 }
 
 /// Force and torque of all contacts on a grain, in registers.
@@ -281,7 +282,7 @@ void check_box(const GrainSystem& system) {
 
 } // namespace
 
-void start(GrainSystem& system, FluidForcing* forcing) {
+void start(GrainSystem& system, double dt, FluidForcing* forcing) {
     const bool first = !system.started;
     Grains& g = system.grains;
     const std::size_t listed = system.neighbours.records.size();
@@ -302,6 +303,8 @@ void start(GrainSystem& system, FluidForcing* forcing) {
     if (first) {
         evaluate_contacts(system, 0.0);
         move_grains<true, false>(system, 0.0, forcing, false);
+        evaluate_contacts(system, 0.5 * dt); // springs live at half steps; contacts that exist at the start have theirs
+
     }
     system.started = true;
 }
@@ -326,7 +329,7 @@ void restore_lists(GrainSystem& system, const std::vector<RememberedContact>& pa
 }
 
 void advance_grains(GrainSystem& system, std::int64_t steps, double dt, FluidForcing* forcing) {
-    start(system, forcing);
+    start(system, dt, forcing);
     const bool verlet = system.integrator == Integrator::velocity_verlet;
     bool stale = steps > 0 && move_grains<false, true>(system, dt, forcing, verlet);
     for (std::int64_t s = 1; s <= steps; ++s) {

@@ -24,9 +24,9 @@ struct FluidForcing {
 /// moves further than its radius in one step.
 void advance_grains(GrainSystem& system, std::int64_t steps, double dt, FluidForcing* forcing = nullptr);
 
-/// Builds the lists and the accelerations of the present state, or the lists only when grains have been added since.
-/// advance_grains calls it; probes of the initial state need it before the first step.
-void start(GrainSystem& system, FluidForcing* forcing = nullptr);
+/// Builds the lists, the accelerations of the present state and the springs of its contacts for steps of `dt`; or the
+/// lists only, when grains have been added since. advance_grains calls it; probes of the initial state need it before.
+void start(GrainSystem& system, double dt = 0.0, FluidForcing* forcing = nullptr);
 
 /// After the fields of a checkpoint have been put into `system`: builds the lists of the run that was saved.
 void restore_lists(GrainSystem& system, const std::vector<RememberedContact>& pairs,

@@ -45,7 +45,9 @@ Vec3 history_drive(const BassetKernel& kernel, double coefficient, std::span<dou
     Eigen::Map<Vec3> slip_before(extra), force_now(extra + 3);
     if (extra[6] == 0.0) { // first seen: it enters with its slip
         BassetKernel::add_jump(states, slip);
-        force_now.setZero(); // singular at this instant; felt from the end of the step on
+        // K slip/sqrt(t) is singular now. Its mean over the step is 2 K slip/sqrt(dt), its value at the end K slip/sqrt(dt);
+        // this start value makes the weighted sum of the two ends the mean. implicit_coefficient = 2 K/sqrt(dt).
+        force_now = ((1.0 - 0.5 * theta) / (1.0 - theta)) * kernel.implicit_coefficient(coefficient) * slip;
     } else {
         const Vec3 change = slip - slip_before;
         force_now = kernel.force_from_past(states, coefficient) + kernel.implicit_coefficient(coefficient) * change;

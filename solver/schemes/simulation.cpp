@@ -125,7 +125,7 @@ std::size_t inject_due(GrainSystem& system) {
 void advance_one(Simulation& s) {
     const double dt = s.timing.dt;
     if (inject_due(s.grains) > 0 && s.fluid) set_inertia(*s.fluid, s.grains, dt);
-    start(s.grains, s.fluid ? &s.fluid->forcing : nullptr);
+    start(s.grains, dt, s.fluid ? &s.fluid->forcing : nullptr);
     if (!s.fluid) return advance_grains(s.grains, 1, dt);
     update_forcing(*s.fluid, s.grains, dt);
     advance_grains(s.grains, 1, dt, &s.fluid->forcing);
@@ -153,7 +153,7 @@ Simulation make_simulation(Scene& scene) {
         limits.push_back(drag_limit(*s.fluid, s.grains));
     s.timing = timing(time, std::move(limits));
     if (s.fluid) set_inertia(*s.fluid, s.grains, s.timing.dt);
-    start(s.grains);
+    start(s.grains, s.timing.dt);
     if (s.fluid) show_initial_forces(*s.fluid, s.grains, s.timing.dt);
     return s;
 }

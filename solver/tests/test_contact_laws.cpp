@@ -193,7 +193,11 @@ TEST(ContactLaws, HertzContactTime) {
     }
     const double ratio = law.contact_time(1e5, 2e3, 0.01) / law.contact_time(1e5, 2e3, 1.0);
     EXPECT_NEAR(ratio, std::pow(100.0, 0.2), 1e-12);
-    EXPECT_EQ(law.contact_time(1e5, 2e3, 0.0), std::numeric_limits<double>::infinity());
+    // At rest: the contact of an overlap of 1e-3 R*, which the speed sqrt(4/5 k_h o^2.5 / m*) reaches.
+    const double k_h = 4.0 / 3.0 * law.parameters.modulus / std::sqrt(2e3), o = 1e-3 / 2e3;
+    const double slow = std::sqrt(0.8 * k_h * std::pow(o, 2.5) * 1e5);
+    EXPECT_NEAR(law.contact_time(1e5, 2e3, 0.0), law.contact_time(1e5, 2e3, slow), 1e-9 * law.contact_time(1e5, 2e3, slow));
+    EXPECT_NEAR(law.contact_time(1e5, 2e3, 0.0), 2.9432 * o / slow, 1e-9 * o / slow);
     EXPECT_EQ(contact_time(ContactLaw(law), 1e5, 2e3, 1.0), law.contact_time(1e5, 2e3, 1.0));
 }
 

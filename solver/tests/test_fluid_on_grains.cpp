@@ -32,7 +32,7 @@ std::string stokes(std::string_view forces = "[]", std::string_view exchange = "
 void advance_with(FluidOnGrains& fluid, GrainSystem& s, int steps, double dt) {
     set_inertia(fluid, s, dt);
     for (int k = 0; k < steps; ++k) {
-        start(s, &fluid.forcing);
+        start(s, dt, &fluid.forcing);
         update_forcing(fluid, s, dt);
         advance_grains(s, 1, dt, &fluid.forcing);
         complete_fluid_forces(fluid, s, dt);

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 HERE = Path(__file__).resolve().parent
 DECADES = 11  # diameters 1e-6 ... 1e-1 m by half decades, so tau_p over ten decades
-UNITS = {"path": "m", "amplification": "1", "overshoot": "1", "progress": "1"}
+UNITS = {"path": "m", "amplification": "1", "excess": "1", "distance": "1", "progress": "1"}
 
 
 def drag_factor(law, re):
@@ -114,8 +114,10 @@ def measure(quantity, run):
     share = -v.reshape(len(t), -1) / terminal
     if quantity == "progress":
         return t, share
-    if quantity == "overshoot":
-        return float(np.max(share) - 1.0)
+    if quantity == "excess":  # how far outside [0, 1] any grain's share of its terminal velocity ever was
+        return float(max(np.max(share) - 1.0, -np.min(share)))
+    if quantity == "distance":
+        return float(np.max(np.abs(1.0 - share[-1])))
     if quantity == "amplification":  # of the distance to the terminal velocity, in the second step
         return float((1.0 - share[2, 0]) / (1.0 - share[1, 0]))
     raise KeyError(quantity)
