@@ -247,6 +247,7 @@ Run Loader::load() {
     load_grains(system);
     if (run.simulation.fluid) load_fluid(*run.simulation.fluid, system.grains.size());
     load_outputs(run, saved);
+    run.begun = true;
     return run;
 }
 

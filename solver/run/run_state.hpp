@@ -17,6 +17,7 @@ struct Run {
     std::vector<SnapshotEntry> snapshots;
     std::string start; // ISO time of the first start
     Cost cost;         // before this process took over
+    bool begun = false; // the initial state has been recorded
 };
 
 /// Everything `scene` describes, ready for its first step. InputError for whatever cannot be meant, unread keys included.
@@ -24,7 +25,7 @@ inline Run make_run(Scene scene) {
     Simulation simulation = make_simulation(scene);
     std::vector<Probe> probes = read_probes(scene, simulation);
     scene.root.finish();
-    return {std::move(scene), std::move(simulation), std::move(probes), {}, iso_time(), {}};
+    return {std::move(scene), std::move(simulation), std::move(probes), {}, iso_time(), {}, false};
 }
 
 /// Steps of the whole run.

@@ -139,7 +139,8 @@ bool run_steps(Run& run, Output& output, Progress& progress, const Interruption&
         output.at_interval();
         progress.show_output(run);
     };
-    if (step == 0) at_event();
+    if (!run.begun) at_event();
+    run.begun = true;
     while (step < end) {
         const std::int64_t next_output = (step / timing.steps_per_output + 1) * timing.steps_per_output;
         const std::int64_t event = next_record(run.probes, step, std::min(next_output, end));

@@ -11,9 +11,10 @@ namespace plumb {
 
 namespace {
 
-// What a history force keeps per grain besides its exponentials: the slip before the step (x, y, z), the force at the
-// start of the step (x, y, z), and 1 once the grain has been seen.
-constexpr std::size_t history_extra = 7;
+// What a history force keeps per grain besides its exponentials: the slip before the step (x, y, z), the slip with which
+// it entered the fluid (x, y, z), the force at the start of the step without that of the entry (x, y, z), and the number
+// of steps since.
+constexpr std::size_t history_extra = 10;
 
 // Share of the history force taken at the end of the step; 1/2 is second order.
 constexpr double theta = 0.5;
@@ -42,20 +43,21 @@ Vec3 history_drive(const BassetKernel& kernel, double coefficient, std::span<dou
                    const Vec3& slip_change_of_fluid) {
     const auto states = memory.first(kernel.state_size());
     double* extra = memory.data() + kernel.state_size();
-    Eigen::Map<Vec3> slip_before(extra), force_now(extra + 3);
-    if (extra[6] == 0.0) { // first seen: it enters with its slip
-        BassetKernel::add_jump(states, slip);
-        // K slip/sqrt(t) is singular now. Its mean over the step is 2 K slip/sqrt(dt), its value at the end K slip/sqrt(dt);
-        // this start value makes the weighted sum of the two ends the mean. implicit_coefficient = 2 K/sqrt(dt).
-        force_now = ((1.0 - 0.5 * theta) / (1.0 - theta)) * kernel.implicit_coefficient(coefficient) * slip;
+    Eigen::Map<Vec3> slip_before(extra), entry(extra + 3), force_now(extra + 6);
+    double& steps = extra[9];
+    if (steps == 0.0) {
+        entry = slip;
     } else {
         const Vec3 change = slip - slip_before;
         force_now = kernel.force_from_past(states, coefficient) + kernel.implicit_coefficient(coefficient) * change;
         kernel.advance(states, change);
     }
-    extra[6] = 1.0;
     slip_before = slip;
-    return (1.0 - theta) * force_now +
+    // The entry's force K entry/sqrt(t) is singular: its exact mean over the step, with implicit_coefficient = 2 K/sqrt(dt).
+    const Vec3 of_entry =
+        (kernel.implicit_coefficient(coefficient) * (std::sqrt(steps + 1.0) - std::sqrt(steps))) * entry;
+    steps += 1.0;
+    return of_entry + (1.0 - theta) * force_now +
            theta * (kernel.force_from_past(states, coefficient) +
                     kernel.implicit_coefficient(coefficient) * slip_change_of_fluid);
 }

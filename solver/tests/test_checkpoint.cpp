@@ -45,6 +45,7 @@ normal = [0.0, 0.0, 1.0]
 contact = "as_grains"
 [[injector]]
 group = "sand"
+diameter = 1e-3
 points = [[0.006, 0.006, 0.025]]
 interval = 2e-3
 velocity = [0.0, 0.0, -1.0]
@@ -86,7 +87,7 @@ motion = "free"
 arrange = {law = "random", count = 30, lower = [0.0, 0.0, 0.0], upper = [0.01, 0.01, 0.01], seed = 1}
 velocity = {law = "uniform_random", speed = 0.05, seed = 2}
 angular_velocity = [0.0, 0.0, 0.0]
-contact = {law = "hertz_mindlin", young = 1e6, poisson = 0.3, restitution = 0.7, friction = 0.3}
+contact = {law = "hertz_mindlin", young = 1e6, poisson = 0.3, restitution = 0.7, friction = 0.3, rolling = "none"}
 [coupling]
 direction = "one_way"
 drag = "schiller_naumann"

@@ -124,7 +124,7 @@ TEST_F(CommandLine, InputErrorsWriteNothing) {
     const std::string scene = path("scene.toml"), out = path("out");
     EXPECT_THAT(complaint({"run", path("none.toml"), "-o", out}, 2), HasSubstr("no such file"));
     EXPECT_THAT(complaint({"run", folder_, "-o", out}, 2), HasSubstr("is a directory"));
-    EXPECT_THAT(complaint({"run", scene, "-o", out, "--set", "fluid.density=nan"}, 2), HasSubstr("fluid"));
+    EXPECT_THAT(complaint({"run", scene, "-o", out, "--set", "fluid.density=nan"}, 2), HasSubstr("coupling"));
     EXPECT_THAT(complaint({"run", scene, "-o", out, "--set", "grains.density=-1.0"}, 2), HasSubstr("grains.density"));
     EXPECT_THAT(complaint({"run", scene, "-o", out, "--set", "grains.colour='red'"}, 2), HasSubstr("grains.colour"));
     EXPECT_THAT(complaint({"run", scene, "-o", out, "--set", "time.step=3e-3"}, 2), HasSubstr("output_interval"));

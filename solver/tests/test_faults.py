@@ -119,7 +119,7 @@ BAD_SCENES = {
         lambda t: changed(
             t,
             '{law = "random", count = 400, lower = [0.0, 0.0, 0.001], upper = [0.01, 0.01, 0.015], seed = 2}',
-            '{law = "lattice", kind = "cubic", spacing = 0.7e-3, lower = [0.0, 0.0, 0.001], upper = [0.01, 0.01, 0.015]}',
+            '{law = "lattice", kind = "cubic", spacing = 0.625e-3, lower = [0.0, 0.0, 0.001], upper = [0.01, 0.01, 0.015]}',
         ),
         "overlap",
     ),
@@ -183,7 +183,7 @@ def test_unreadable_scene(tmp_path, scene):
 
 def test_too_large_a_step_diverges(tmp_path, scene):
     out = tmp_path / "out"
-    text = complaint(plumb("run", scene, "-o", out, "--quiet", "--set", "time.step=5e-4"), 3)
+    text = complaint(plumb("run", scene, "-o", out, "--quiet", "--set", "time.step=5e-4", "--set", "probe.1.interval=5e-4"), 3)
     for part in ("step ", "grain ", "contact limit", "diverged.h5"):
         assert part in text
     with h5py.File(out / "snapshots" / "diverged.h5") as file:

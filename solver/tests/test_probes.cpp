@@ -1,6 +1,7 @@
 // Probe quantities by hand, contact energies, the part of a sphere in a box, and the reader of [[probe]].
 #include "core/errors.hpp"
 #include "core/random.hpp"
+#include "dem/advance_grains.hpp"
 #include "run/probes.hpp"
 #include "run/sphere_overlap.hpp"
 
@@ -54,6 +55,8 @@ double probed(const std::string& keys) {
     auto& grains = bench.simulation.grains.grains;
     const auto place = positions_of_ids(grains);
     grains.x[static_cast<std::size_t>(place[1])][0] = 7.5;
+    bench.simulation.grains.started = false; // they were no neighbours where the scene put them
+    start(bench.simulation.grains);
     record(bench.probes, bench.simulation);
     return bench.probes.front().value.front();
 }
