@@ -67,10 +67,17 @@ struct StepFunctions {
     return {forcing->phi0[k], forcing->phi1[k], forcing->phi2[k], load3(forcing->drive[k].data())};
 }
 
+/// What moves a grain, in registers.
+struct MotionState {
+    HalfPack v, a, omega, alpha;
+};
+[[gnu::always_inline]] inline MotionState motion_state(const Grains& g, std::size_t k) {
+    return {load3(g.v[k].data()), load3(g.a[k].data()), load3(g.omega[k].data()), load3(g.alpha[k].data())};
+}
+
 /// Velocity at the end of the step if the contacts stayed as they are; the contacts of the new positions see this one.
-[[gnu::always_inline]] inline HalfPack predicted_velocity(const Grains& g, std::size_t k, const StepFunctions& f,
-                                                          double dt) {
-    return f.phi0 * load3(g.v[k].data()) + (dt * f.phi1) * (load3(g.a[k].data()) + f.drive);
+[[gnu::always_inline]] inline HalfPack predicted_velocity(const MotionState& m, const StepFunctions& f, double dt) {
+    return f.phi0 * m.v + (dt * f.phi1) * (m.a + f.drive);
 }
 
 [[noreturn]] void report_divergence(const GrainSystem& system, std::size_t k, double dt, double moved) {
@@ -83,19 +90,18 @@ struct StepFunctions {
 }
 
 /// Moves grain k to the end of the step and writes its record. Returns the distance squared moved in this step.
-[[gnu::always_inline]] inline double drift_grain(GrainSystem& system, std::size_t k, double dt,
-                                                 const FluidForcing* forcing) {
+[[gnu::always_inline]] inline double drift_grain(GrainSystem& system, std::size_t k, const MotionState& m, double dt,
+                                                 const FluidForcing* forcing, bool verlet) {
     Grains& g = system.grains;
     const StepFunctions f = step_functions(forcing, k);
-    const HalfPack predicted = predicted_velocity(g, k, f, dt);
-    const HalfPack omega = load3(g.omega[k].data()) + dt * load3(g.alpha[k].data());
-    HalfPack moved;
-    if (system.integrator == Integrator::velocity_verlet) {
-        moved = (dt * f.phi1) * load3(g.v[k].data()) + (dt * dt * f.phi2) * (load3(g.a[k].data()) + f.drive);
+    const HalfPack predicted = predicted_velocity(m, f, dt);
+    const HalfPack omega = m.omega + dt * m.alpha;
+    HalfPack moved = dt * predicted;
+    if (verlet) {
+        moved = (dt * f.phi1) * m.v + (dt * dt * f.phi2) * (m.a + f.drive);
     } else {
         store3(g.v[k].data(), predicted);
         store3(g.omega[k].data(), omega);
-        moved = dt * predicted;
     }
     const HalfPack x = load3(g.x[k].data()) + moved;
     store3(g.x[k].data(), x);
@@ -159,23 +165,30 @@ bool has_block(const GrainSystem& system) {
                        [](const GrainGroup& g) { return g.motion == Motion::block; });
 }
 
-/// Ends the step of grain k with the forces of the last evaluation. `corrects` is false when there was no step.
-[[gnu::always_inline]] inline void kick_grain(GrainSystem& system, std::size_t k, double dt,
-                                              const FluidForcing* forcing, const std::vector<Vec3>& block,
-                                              bool corrects) {
+/// Ends the step of grain k with the forces of the last evaluation and returns its new state, which stays in registers
+/// for the next drift: reading back what has just been stored in parts would stall. `corrects` is false when there was
+/// no step.
+[[gnu::always_inline]] inline MotionState kick_grain(GrainSystem& system, std::size_t k, double dt,
+                                                     const FluidForcing* forcing, const std::vector<Vec3>& block,
+                                                     bool corrects) {
     Grains& g = system.grains;
     const Wrench wrench = contact_wrench(system, k);
-    HalfPack a = g.mobility[k] * (wrench.force + g.mass[k] * load3(system.domain.gravity.data()));
+    MotionState now = motion_state(g, k);
+    const MotionState before = now;
+    now.a = g.mobility[k] * (wrench.force + g.mass[k] * load3(system.domain.gravity.data()));
     if (!block.empty() && system.groups[static_cast<std::size_t>(g.group[k])].motion == Motion::block)
-        a = load3(block[static_cast<std::size_t>(g.group[k])].data());
-    const HalfPack alpha = g.spin_mobility[k] * wrench.torque;
+        now.a = load3(block[static_cast<std::size_t>(g.group[k])].data());
+    now.alpha = g.spin_mobility[k] * wrench.torque;
     if (corrects) {
         const StepFunctions f = step_functions(forcing, k);
-        store3(g.v[k].data(), predicted_velocity(g, k, f, dt) + (dt * f.phi2) * (a - load3(g.a[k].data())));
-        store3(g.omega[k].data(), load3(g.omega[k].data()) + (0.5 * dt) * (load3(g.alpha[k].data()) + alpha));
+        now.v = predicted_velocity(before, f, dt) + (dt * f.phi2) * (now.a - before.a);
+        now.omega += (0.5 * dt) * (before.alpha + now.alpha);
+        store3(g.v[k].data(), now.v);
+        store3(g.omega[k].data(), now.omega);
     }
-    store3(g.a[k].data(), a);
-    store3(g.alpha[k].data(), alpha);
+    store3(g.a[k].data(), now.a);
+    store3(g.alpha[k].data(), now.alpha);
+    return now;
 }
 
 /// How far a grain may be from where it was listed at the end of the coming step [m]; negative if walls have moved
@@ -194,15 +207,16 @@ bool move_grains(GrainSystem& system, double dt, const FluidForcing* forcing, bo
     Grains& g = system.grains;
     const std::vector<Vec3> block = kicks && has_block(system) ? block_accelerations(system) : std::vector<Vec3>();
     const bool collide = !contactless(system.contact);
+    const bool verlet = system.integrator == Integrator::velocity_verlet;
     const double allowed = allowed_distance(system, dt);
     const double allowed_sq = allowed > 0.0 ? allowed * allowed : -1.0;
     std::vector<std::uint8_t> left((g.size() + parallel_chunk - 1) / parallel_chunk, 0);
     parallel_chunks(g.size(), [&](std::size_t begin, std::size_t end) {
         bool leaves = false;
         for (std::size_t k = begin; k < end; ++k) {
-            if constexpr (kicks) kick_grain(system, k, dt, forcing, block, corrects);
+            const MotionState now = kicks ? kick_grain(system, k, dt, forcing, block, corrects) : motion_state(g, k);
             if constexpr (drifts) {
-                const double moved_sq = drift_grain(system, k, dt, forcing);
+                const double moved_sq = drift_grain(system, k, now, dt, forcing, verlet);
                 // written so that NaN is caught; without contacts a grain may move as far as it likes
                 const bool sound = collide ? moved_sq <= g.radius[k] * g.radius[k] : std::isfinite(moved_sq);
                 if (!sound) report_divergence(system, k, dt, std::sqrt(moved_sq));
@@ -215,8 +229,8 @@ bool move_grains(GrainSystem& system, double dt, const FluidForcing* forcing, bo
     return collide && std::any_of(left.begin(), left.end(), [](std::uint8_t l) { return l != 0; });
 }
 
-/// The forcing in the new order of the grains. Grains that have been added since it was made stand at the end of the old
-/// order; theirs is unset, and their memory empty.
+/// The forcing in the new order of the grains. Grains that have been added since it was made stand at the end of the
+/// old order; theirs is unset, and their memory empty.
 void reorder_forcing(FluidForcing& forcing, const std::vector<std::int32_t>& order) {
     const std::size_t n = order.size();
     for (auto* field : {&forcing.phi0, &forcing.phi1, &forcing.phi2}) field->resize(n);
@@ -304,7 +318,6 @@ void start(GrainSystem& system, double dt, FluidForcing* forcing) {
         evaluate_contacts(system, 0.0);
         move_grains<true, false>(system, 0.0, forcing, false);
         evaluate_contacts(system, 0.5 * dt); // springs live at half steps; contacts that exist at the start have theirs
-
     }
     system.started = true;
 }

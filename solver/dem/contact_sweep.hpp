@@ -18,13 +18,13 @@ namespace plumb {
 
 namespace sweep {
 
-inline constexpr std::size_t blocks_at_once = 16; // 16 blocks of 11 packs are 11 KiB: a quarter of the L1 cache
+inline constexpr std::size_t blocks_at_once = 8; // of 1 KiB each: with the records they read, within the L1 cache
 
 /// Geometry of eight pairs.
 struct Block {
     Contact<Pack> contact;
-    Pack lever;          // |x_i - x_j| / (R_i + R_j)
-    Space<Pack> rolling; // omega_i - omega_j [rad/s], with a rolling law only
+    Pack lever;           // |x_i - x_j| / (R_i + R_j)
+    Space<Pack> rolling;  // omega_i - omega_j [rad/s], with a rolling law only
     Pack inverse_inertia; // 1/I_i + 1/I_j [1/(kg m2)], with a rolling law only
 };
 
@@ -62,13 +62,15 @@ inline void wrap(Pack& d, double size) {
 }
 
 template <bool radii, bool rolls>
-[[gnu::always_inline]] inline void compute_geometry(const Neighbours& list, std::size_t block, const Domain& domain, double dt, Block& out) {
+[[gnu::always_inline]] inline void compute_geometry(const Neighbours& list, std::size_t block, const Domain& domain,
+                                                    double dt, Block& out) {
     const std::int32_t* i = list.i.data() + 8 * block;
     const std::int32_t* j = list.j.data() + 8 * block;
     const Pack sign{-1, -1, -1, 1, -1, -1, -1, 1}; // differences of x and v, sums of radius and inverse mass
     Pack d[8];
-    for (int k = 0; k < 8; ++k) d[k] = load(list.records[static_cast<std::size_t>(i[k])]) +
-                                       sign * load(list.records[static_cast<std::size_t>(j[k])]);
+    for (int k = 0; k < 8; ++k)
+        d[k] = load(list.records[static_cast<std::size_t>(i[k])]) +
+               sign * load(list.records[static_cast<std::size_t>(j[k])]);
     transpose(d);
     if (list.crosses[block])
         for (int c = 0; c < 3; ++c)
@@ -90,8 +92,8 @@ template <bool radii, bool rolls>
             const double ra = list.records[a].radius, rb = list.records[b].radius;
             contact.inverse_radius[k] = 1.0 / ra + 1.0 / rb;
             if constexpr (rolls) { // 1/I = 5 / (2 m R^2)
-                out.inverse_inertia[k] = 2.5 * (list.records[a].inverse_mass / (ra * ra) +
-                                                list.records[b].inverse_mass / (rb * rb));
+                out.inverse_inertia[k] =
+                    2.5 * (list.records[a].inverse_mass / (ra * ra) + list.records[b].inverse_mass / (rb * rb));
                 out.rolling.x[k] = list.spins[a].x / ra - list.spins[b].x / rb;
                 out.rolling.y[k] = list.spins[a].y / ra - list.spins[b].y / rb;
                 out.rolling.z[k] = list.spins[a].z / ra - list.spins[b].z / rb;
@@ -100,9 +102,8 @@ template <bool radii, bool rolls>
 }
 
 /// Parameters of eight pairs: the same for all, or each lane's own.
-template <class Law>
-class LaneParameters {
-  public:
+template <class Law> class LaneParameters {
+public:
     using Packed = typename Law::template Parameters<Pack>;
     using Single = typename Law::template Parameters<double>;
     static constexpr std::size_t numbers = sizeof(Single) / sizeof(double);
@@ -127,7 +128,7 @@ class LaneParameters {
         return packed;
     }
 
-  private:
+private:
     static std::int32_t material(const Neighbours& list, std::int32_t grain) {
         return static_cast<std::int32_t>(list.spins[static_cast<std::size_t>(grain)].material);
     }
@@ -148,7 +149,7 @@ inline void store_stretch(double* at, PackMask touching, const Space<Pack>& stre
 
 template <class Law, class RollingLawType>
 [[gnu::always_inline]] inline void apply_laws(Neighbours& list, std::size_t block, const LaneParameters<Law>& laws,
-                       const LaneParameters<RollingLawType>& rolling, const Block& b) {
+                                              const LaneParameters<RollingLawType>& rolling, const Block& b) {
     constexpr bool rolls = !std::is_same_v<RollingLawType, NoRolling>;
     const Pack zero = broadcast<Pack>(0.0);
     const PackMask touching = b.contact.overlap > zero;
@@ -166,12 +167,9 @@ template <class Law, class RollingLawType>
     if constexpr (rolls) {
         const Pack normal_force = larger(f.normal, zero);
         const Space<Pack> twist = dot(b.rolling, b.contact.normal) * b.contact.normal;
-        const Rolling<Pack> state{b.contact.normal,
-                                  b.rolling - twist,
-                                  normal_force,
-                                  broadcast<Pack>(1.0) / b.contact.inverse_radius,
-                                  b.inverse_inertia,
-                                  b.contact.time_step};
+        const Rolling<Pack> state{b.contact.normal,  b.rolling - twist,
+                                  normal_force,      broadcast<Pack>(1.0) / b.contact.inverse_radius,
+                                  b.inverse_inertia, b.contact.time_step};
         double* bend_at = memory + 8 * Law::history;
         Space<Pack> bend{zero, zero, zero};
         if constexpr (RollingLawType::history > 0) bend = load_stretch(bend_at);
