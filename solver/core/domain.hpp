@@ -10,7 +10,7 @@ namespace plumb {
 
 /// Axis-aligned box [0, size]; sides are periodic or open (a wall is a separate thing).
 struct Domain {
-    Vec3 size = Vec3::Zero();    // [m]
+    Vec3 size = Vec3::Zero(); // [m]
     std::array<bool, 3> periodic{};
     Vec3 gravity = Vec3::Zero(); // [m/s2]
 

@@ -21,8 +21,9 @@ class IoError : public std::runtime_error {
 
 /// The solution left the range in which the scheme means anything (exit code 3).
 class Diverged : public std::runtime_error {
-  public:
-    /// `field` at `index` (grain id or fluid particle) took `value` in `step`; `likely_limit` says which bound was broken.
+public:
+    /// `field` at `index` (grain id or fluid particle) took `value` in `step`; `likely_limit` says which bound was
+    /// broken.
     Diverged(std::int64_t step, double time, std::string field, std::int64_t index, double value,
              std::string likely_limit);
 

@@ -15,26 +15,23 @@ inline constexpr std::size_t huge_page = std::size_t{1} << 21U; // [bytes]
 
 /// Allocator for std::vector that aligns to a cache line. Large fields ask for huge pages: the sweep over pairs reads
 /// records in random order, and with small pages it would wait for address translation.
-template <class T>
-struct CacheAligned {
+template <class T> struct CacheAligned {
     using value_type = T;
     CacheAligned() = default;
-    template <class U>
-    CacheAligned(const CacheAligned<U>& /*other*/) {}
+    template <class U> CacheAligned(const CacheAligned<U>& /*other*/) {}
     T* allocate(std::size_t n) {
         const std::size_t bytes = n * sizeof(T);
-        void* p = ::operator new (bytes, alignment(n));
+        void* p = ::operator new(bytes, alignment(n));
         if (bytes >= huge_page) madvise(p, bytes, MADV_HUGEPAGE); // advice only: a refusal changes nothing
         return static_cast<T*>(p);
     }
-    void deallocate(T* p, std::size_t n) noexcept { ::operator delete (p, alignment(n)); }
+    void deallocate(T* p, std::size_t n) noexcept { ::operator delete(p, alignment(n)); }
     static std::align_val_t alignment(std::size_t n) {
         return std::align_val_t{n * sizeof(T) >= huge_page ? huge_page : cache_line};
     }
     friend bool operator==(const CacheAligned& /*a*/, const CacheAligned& /*b*/) { return true; }
 };
 
-template <class T>
-using Field = std::vector<T, CacheAligned<T>>;
+template <class T> using Field = std::vector<T, CacheAligned<T>>;
 
 } // namespace plumb

@@ -33,8 +33,7 @@ struct LawEntry {
 };
 
 namespace detail {
-template <class Law>
-Law make_law(Table& table) {
+template <class Law> Law make_law(Table& table) {
     if constexpr (std::is_constructible_v<Law, Table&>)
         return Law(table);
     else
@@ -43,19 +42,16 @@ Law make_law(Table& table) {
 } // namespace detail
 
 /// Names, formulas and ranges of a family, in the order of the variant.
-template <class Family, std::size_t... I>
-std::vector<LawEntry> law_entries(std::index_sequence<I...> /*members*/) {
+template <class Family, std::size_t... I> std::vector<LawEntry> law_entries(std::index_sequence<I...> /*members*/) {
     return {LawEntry{std::string(std::variant_alternative_t<I, Family>::name),
                      std::variant_alternative_t<I, Family>::info}...};
 }
-template <class Family>
-std::vector<LawEntry> law_entries() {
+template <class Family> std::vector<LawEntry> law_entries() {
     return law_entries<Family>(std::make_index_sequence<std::variant_size_v<Family>>{});
 }
 
 /// The law of `Family` that `table` names in its key "law", built from that table. InputError for an unknown name.
-template <class Family, std::size_t... I>
-Family make_family(Table& table, std::index_sequence<I...> /*members*/) {
+template <class Family, std::size_t... I> Family make_family(Table& table, std::index_sequence<I...> /*members*/) {
     const std::string name = table.text("law");
     std::optional<Family> made;
     const auto attempt = [&]<class Law>(std::type_identity<Law> /*type*/) {
@@ -69,14 +65,12 @@ Family make_family(Table& table, std::index_sequence<I...> /*members*/) {
     }
     return *std::move(made);
 }
-template <class Family>
-Family make_family(Table table) {
+template <class Family> Family make_family(Table table) {
     return make_family<Family>(table, std::make_index_sequence<std::variant_size_v<Family>>{});
 }
 
 /// Name of the law a variant holds.
-template <class Family>
-std::string law_name(const Family& family) {
+template <class Family> std::string law_name(const Family& family) {
     return std::visit([](const auto& law) { return std::string(std::decay_t<decltype(law)>::name); }, family);
 }
 

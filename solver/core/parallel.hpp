@@ -19,8 +19,7 @@ inline int thread_count() { return omp_get_max_threads(); }
 
 /// Calls body(begin, end) for consecutive chunks that cover [0, n). Chunks may run at the same time in any order.
 /// An exception in a chunk is rethrown after the loop; with several, that of the lowest chunk, as a serial loop would.
-template <class Body>
-void parallel_chunks(std::size_t n, Body&& body, std::size_t chunk = parallel_chunk) {
+template <class Body> void parallel_chunks(std::size_t n, Body&& body, std::size_t chunk = parallel_chunk) {
     const auto chunks = static_cast<std::ptrdiff_t>((n + chunk - 1) / chunk);
     const auto range = [&](std::ptrdiff_t c) {
         const auto begin = static_cast<std::size_t>(c) * chunk;
@@ -44,16 +43,14 @@ void parallel_chunks(std::size_t n, Body&& body, std::size_t chunk = parallel_ch
 }
 
 /// Calls body(i) for every i in [0, n).
-template <class Body>
-void parallel_for(std::size_t n, Body&& body) {
+template <class Body> void parallel_for(std::size_t n, Body&& body) {
     parallel_chunks(n, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) body(i);
     });
 }
 
 /// Sum of term(i) over [0, n): within fixed chunks, then over the chunks, both in ascending order.
-template <class T, class Term>
-T ordered_sum(std::size_t n, T zero, Term&& term) {
+template <class T, class Term> T ordered_sum(std::size_t n, T zero, Term&& term) {
     std::vector<T> part((n + parallel_chunk - 1) / parallel_chunk, zero);
     parallel_chunks(n, [&](std::size_t begin, std::size_t end) {
         T sum = zero;

@@ -8,7 +8,7 @@
 namespace plumb {
 
 class Random {
-  public:
+public:
     explicit Random(std::int64_t seed) : engine_(static_cast<std::uint64_t>(seed)) {}
 
     /// Uniform in [0, 1), 53 bits.
@@ -25,7 +25,7 @@ class Random {
         }
     }
 
-  private:
+private:
     std::mt19937_64 engine_;
 };
 

@@ -30,8 +30,8 @@ std::string file_content(const std::string& path) {
     const std::uintmax_t bytes = fs::file_size(path, error);
     if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
     if (bytes > largest_scene)
-        throw InputError(fmt::format("{}: {} bytes is too large for a scene; at most {} are allowed", path, bytes,
-                                     largest_scene));
+        throw InputError(
+            fmt::format("{}: {} bytes is too large for a scene; at most {} are allowed", path, bytes, largest_scene));
     std::ifstream file(path, std::ios::binary);
     if (!file) throw InputError(fmt::format("{}: cannot be opened: {}", path, std::strerror(errno)));
     std::ostringstream content;
@@ -56,29 +56,35 @@ std::string printed(const toml::table& data) {
     return out.str();
 }
 
+std::string trimmed(const std::string& text) {
+    const std::size_t begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
+    return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
+}
+
 /// One `key.path=value`, split and checked. The messages name the override as it was typed.
 struct Override {
     std::vector<std::string> keys;
     toml::table holder; // the value, under the key "value"
 
     explicit Override(const std::string& text) {
+        if (text.find('\n') != std::string::npos) throw InputError("--set: a value must stand on one line");
         const std::size_t equals = text.find('=');
         if (equals == std::string::npos || equals == 0)
             throw InputError(fmt::format("--set {}: expected key.path=value", text));
         std::string path = text.substr(0, equals);
         std::string value = text.substr(equals + 1);
         std::stringstream parts(path);
-        for (std::string key; std::getline(parts, key, '.');) keys.push_back(key);
+        for (std::string key; std::getline(parts, key, '.');) keys.push_back(trimmed(key));
         if (path.back() == '.' || std::find(keys.begin(), keys.end(), "") != keys.end())
             throw InputError(fmt::format("--set {}: a key in \"{}\" is empty", text, path));
-        if (path == "probe") throw InputError(fmt::format("--set {}: the list of probes cannot be set", text));
+        if (keys == std::vector<std::string>{"probe"})
+            throw InputError(fmt::format("--set {}: the list of probes cannot be set", text));
         try {
             holder = toml::parse("value = " + value);
         } catch (const toml::parse_error&) {
             holder.clear();
         }
-        // More than one key means that the value broke out of its line.
-        if (holder.size() != 1 || value.find('\n') != std::string::npos)
+        if (holder.size() != 1)
             throw InputError(
                 fmt::format("--set {}: \"{}\" is not a TOML value; a string needs quotes: --set '{}=\"{}\"'", text,
                             value, path, value));
@@ -119,8 +125,7 @@ void apply(toml::table& data, const std::string& text) {
             place = table->get(key);
         } else if (toml::array* array = place->as_array()) {
             const std::size_t index = array_index(*array, key, text);
-            if (last)
-                value.visit([&](const auto& v) { array->replace(array->cbegin() + static_cast<int>(index), v); });
+            if (last) value.visit([&](const auto& v) { array->replace(array->cbegin() + static_cast<int>(index), v); });
             place = array->get(index);
         } else {
             throw InputError(

@@ -13,10 +13,10 @@ namespace plumb {
 struct Scene {
     toml::table data;
     Table root;
-    std::string path;   // as given, for messages
-    std::string folder; // absolute; files named by the scene are looked for here
-    std::string text;   // the scene after the overrides, as TOML; reading it again gives equal data
-    std::string hash;   // of `text`, "fnv1a64:<16 hex digits>"
+    std::string path;                   // as given, for messages
+    std::string folder;                 // absolute; files named by the scene are looked for here
+    std::string text;                   // the scene after the overrides, as TOML; reading it again gives equal data
+    std::string hash;                   // of `text`, "fnv1a64:<16 hex digits>"
     std::vector<std::string> overrides; // "key.path=value", as given
 };
 

@@ -16,11 +16,9 @@ inline constexpr int pack_width = 8;
 using Pack [[gnu::vector_size(64)]] = double;
 using PackMask [[gnu::vector_size(64)]] = std::int64_t; // lanes are 0 or -1
 
-template <class T>
-using MaskOf = std::conditional_t<std::is_same_v<T, Pack>, PackMask, bool>;
+template <class T> using MaskOf = std::conditional_t<std::is_same_v<T, Pack>, PackMask, bool>;
 
-template <class T>
-inline T broadcast(double x) {
+template <class T> inline T broadcast(double x) {
     if constexpr (std::is_same_v<T, Pack>)
         return Pack{x, x, x, x, x, x, x, x};
     else
@@ -29,7 +27,7 @@ inline T broadcast(double x) {
 
 inline double square_root(double x) { return std::sqrt(x); }
 inline Pack square_root(Pack x) {
-#ifdef __AVX512F__ // the compiler makes two halves of the loop below
+#ifdef __AVX512F__                        // the compiler makes two halves of the loop below
     return _mm512_maskz_sqrt_pd(0xff, x); // the plain one alarms g++ 12 (uninitialised __Y)
 #else
     Pack r;
@@ -41,14 +39,8 @@ inline Pack square_root(Pack x) {
 inline double select(bool m, double a, double b) { return m ? a : b; }
 inline Pack select(PackMask m, Pack a, Pack b) { return m ? a : b; }
 
-template <class T>
-inline T larger(T a, T b) {
-    return select(a > b, a, b);
-}
-template <class T>
-inline T smaller(T a, T b) {
-    return select(a < b, a, b);
-}
+template <class T> inline T larger(T a, T b) { return select(a > b, a, b); }
+template <class T> inline T smaller(T a, T b) { return select(a < b, a, b); }
 
 inline bool any(bool m) { return m; }
 inline bool any(PackMask m) {
@@ -72,24 +64,18 @@ using HalfPack [[gnu::vector_size(32)]] = double;
 }
 
 /// A vector of space whose components are doubles or packs.
-template <class T>
-struct Space {
+template <class T> struct Space {
     T x, y, z;
 
     friend Space operator+(const Space& a, const Space& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
     friend Space operator-(const Space& a, const Space& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
     friend Space operator*(const T& s, const Space& a) { return {s * a.x, s * a.y, s * a.z}; }
 };
-template <class T>
-inline T dot(const Space<T>& a, const Space<T>& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class T>
-inline Space<T> cross(const Space<T>& a, const Space<T>& b) {
+template <class T> inline T dot(const Space<T>& a, const Space<T>& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+template <class T> inline Space<T> cross(const Space<T>& a, const Space<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-template <class T>
-inline Space<T> select(MaskOf<T> m, const Space<T>& a, const Space<T>& b) {
+template <class T> inline Space<T> select(MaskOf<T> m, const Space<T>& a, const Space<T>& b) {
     return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
 }
 

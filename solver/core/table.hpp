@@ -37,7 +37,7 @@ inline constexpr Range positive_fraction{0.0, 1.0, true, false}; // (0, 1]
 /// One table of the scene, with its path ("grains.contact") for messages. Reading a key marks it as used; finish()
 /// throws for keys nobody read. All readers throw InputError naming file, key, value and what is allowed.
 class Table {
-  public:
+public:
     Table(const toml::table& table, std::string path, std::string file);
 
     bool has(std::string_view key) const;
@@ -72,7 +72,7 @@ class Table {
     const std::string& path() const { return path_; }
     const std::string& file() const { return file_; }
 
-  private:
+private:
     struct Read; // which keys were read, shared by copies of this table
     const toml::node& required(std::string_view key, std::string_view expected);
     double checked(std::string_view key, const toml::node& node, const Range& range) const;

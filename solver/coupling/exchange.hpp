@@ -25,12 +25,14 @@ struct ExponentialExchange {
     static constexpr LawInfo info{"phi0 = exp(-z)", "any step", "Hochbruck & Ostermann 2010, Acta Numerica 19, 209"};
     static constexpr int most_iterations = 100;
     StepWeights operator()(double z) const {
-        // Below z = 0.05 the differences lose digits; four terms of the series are then exact to 1e-9 relative in phi2's
-        // correction, that is to rounding after the factor z.
+        // Below z = 0.05 the differences lose digits; four terms of the series are then exact to 1e-9 relative in
+        // phi2's correction, that is to rounding after the factor z.
         if (z < 0.05) {
             const double phi2 =
-                1.0 / 2 - z * (1.0 / 6 - z * (1.0 / 24 - z * (1.0 / 120 - z * (1.0 / 720 - z * (1.0 / 5040 -
-                                                                          z * (1.0 / 40320 - z / 362880))))));
+                1.0 / 2 -
+                z * (1.0 / 6 -
+                     z * (1.0 / 24 -
+                          z * (1.0 / 120 - z * (1.0 / 720 - z * (1.0 / 5040 - z * (1.0 / 40320 - z / 362880))))));
             const double phi1 = 1.0 - z * phi2;
             return {1.0 - z * phi1, phi1, phi2};
         }
@@ -42,7 +44,8 @@ struct ExponentialExchange {
 /// phi0 = 1/(1 + z + z^2/2), the (0,2) Pade approximant: implicit, L-stable, second order.
 struct ImplicitExchange {
     static constexpr std::string_view name = "implicit";
-    static constexpr LawInfo info{"phi0 = 1/(1 + z + z^2/2)", "any step", "Hairer & Wanner 1996, Solving ODEs II, IV.3"};
+    static constexpr LawInfo info{"phi0 = 1/(1 + z + z^2/2)", "any step",
+                                  "Hairer & Wanner 1996, Solving ODEs II, IV.3"};
     static constexpr int most_iterations = 100;
     StepWeights operator()(double z) const {
         const double d = 1.0 + z * (1.0 + 0.5 * z);
@@ -65,7 +68,8 @@ using Exchange = std::variant<ExponentialExchange, ImplicitExchange, ExplicitExc
 ///
 /// Fixed-point iteration with the geometric mean of old and new rate. Where the step is long, the slip at its middle is
 /// g/beta, so for beta ~ slip^p the plain iteration multiplies the logarithmic error by -p and would not end at p = 1
-/// (constant drag coefficient); the mean multiplies it by (1 - p)/2, at most 1/2 for any 0 <= p <= 1 (Stokes to Newton).
+/// (constant drag coefficient); the mean multiplies it by (1 - p)/2, at most 1/2 for any 0 <= p <= 1 (Stokes to
+/// Newton).
 template <class ExchangeLaw, class Rate>
 double mid_step_rate(const ExchangeLaw& exchange, const Rate& rate, const Vec3& slip, const Vec3& g, double dt) {
     const double tolerance = 1e-13; // relative; a few rounding errors

@@ -11,8 +11,7 @@ constexpr Range poisson_range{-1.0, 0.5, true, false};    // thermodynamic bound
 
 /// Half a period of the damped oscillator: pi / sqrt(k/m* - (c/2m*)^2) [s]. An overdamped contact has none; then the
 /// undamped one is the shortest time in play.
-template <class P>
-double linear_contact_time(const P& p, double inverse_mass) {
+template <class P> double linear_contact_time(const P& p, double inverse_mass) {
     const double rate = 0.5 * (p.damping + p.damping_root / std::sqrt(inverse_mass)) * inverse_mass;
     const double frequency_sq = p.stiffness * inverse_mass - rate * rate;
     return std::numbers::pi / std::sqrt(frequency_sq > 0.0 ? frequency_sq : p.stiffness * inverse_mass);
@@ -41,9 +40,8 @@ LinearSpring::LinearSpring(Table& table) : parameters{} {
     parameters.tangential_stiffness = frictional || table.has("tangential_stiffness")
                                           ? table.number("tangential_stiffness", positive)
                                           : parameters.stiffness;
-    parameters.tangential_damping = frictional || table.has("tangential_damping")
-                                        ? table.number("tangential_damping", non_negative)
-                                        : 0.0;
+    parameters.tangential_damping =
+        frictional || table.has("tangential_damping") ? table.number("tangential_damping", non_negative) : 0.0;
 }
 
 double LinearSpring::contact_time(double inverse_mass, double /*inverse_radius*/, double /*speed*/) const {

@@ -16,19 +16,17 @@
 
 namespace plumb {
 
-template <class T>
-struct Contact {
-    T overlap;           // [m]
-    Space<T> normal;     // unit vector from j to i
-    Space<T> velocity;   // of the surface of i against that of j at the contact point [m/s]
-    T inverse_mass;      // 1/m_i + 1/m_j [1/kg]
-    T inverse_radius;    // 1/R_i + 1/R_j [1/m]
-    T time_step;         // [s]
+template <class T> struct Contact {
+    T overlap;         // [m]
+    Space<T> normal;   // unit vector from j to i
+    Space<T> velocity; // of the surface of i against that of j at the contact point [m/s]
+    T inverse_mass;    // 1/m_i + 1/m_j [1/kg]
+    T inverse_radius;  // 1/R_i + 1/R_j [1/m]
+    T time_step;       // [s]
 };
 
 /// Force on i, split because Coulomb's and the rolling limit need the normal part.
-template <class T>
-struct ContactForce {
+template <class T> struct ContactForce {
     T normal;            // along the normal, > 0 repulsive [N]
     Space<T> tangential; // [N]
 };
@@ -43,16 +41,17 @@ inline double damping_ratio(double restitution) {
 /// Stretch of a tangential spring at the end of the step. The stretch is kept at half steps (midpoint rule, second
 /// order); the part along the new normal is dropped because the contact plane has turned with the grains.
 template <class T>
-[[gnu::always_inline]] inline Space<T> turned_stretch(const Space<T>& stretch, const Space<T>& slip, const Contact<T>& c) {
+[[gnu::always_inline]] inline Space<T> turned_stretch(const Space<T>& stretch, const Space<T>& slip,
+                                                      const Contact<T>& c) {
     const Space<T> now = stretch + (broadcast<T>(0.5) * c.time_step) * slip;
     return now - dot(now, c.normal) * c.normal;
 }
 
-/// A tangential spring and dashpot limited by Coulomb's friction; `stretch` is advanced to the next half step. A contact
-/// that slides keeps the stretch which carries exactly the limit.
+/// A tangential spring and dashpot limited by Coulomb's friction; `stretch` is advanced to the next half step. A
+/// contact that slides keeps the stretch which carries exactly the limit.
 template <class T>
-[[gnu::always_inline]] inline Space<T> frictional_force(const Contact<T>& c, const Space<T>& slip, const Space<T>& now, T spring, T dashpot, T limit,
-                          Space<T>& stretch) {
+[[gnu::always_inline]] inline Space<T> frictional_force(const Contact<T>& c, const Space<T>& slip, const Space<T>& now,
+                                                        T spring, T dashpot, T limit, Space<T>& stretch) {
     const Space<T> trial = spring * now + dashpot * slip;
     const T trial_sq = dot(trial, trial);
     const auto slides = trial_sq > limit * limit;
@@ -73,10 +72,7 @@ struct NoContact {
     static constexpr std::string_view name = "none";
     static constexpr LawInfo info{"f = 0", "any", "-"};
     static constexpr int history = 0; // numbers remembered from step to step
-    template <class T>
-    struct Parameters {
-        T friction{};
-    };
+    template <class T> struct Parameters { T friction{}; };
     explicit NoContact(Table& /*table*/) {}
     Parameters<double> parameters;
     double contact_time(double /*inverse_mass*/, double /*inverse_radius*/, double /*speed*/) const {
@@ -106,8 +102,7 @@ struct LinearSpring {
     static constexpr LawInfo info{"f_n = k o - c v_n, f_t = -(k_t s + c_t v_t), |f_t| <= mu f_n", "overlap << radius",
                                   "Cundall & Strack 1979, Geotechnique 29, 47"};
     static constexpr int history = 3;
-    template <class T>
-    struct Parameters {
+    template <class T> struct Parameters {
         T stiffness, damping, damping_root, tangential_stiffness, tangential_damping, friction;
     };
     explicit LinearSpring(Table& table);
@@ -115,7 +110,8 @@ struct LinearSpring {
     double contact_time(double inverse_mass, double inverse_radius, double speed) const;
 
     template <class T>
-    [[gnu::always_inline]] static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p, Space<T>& stretch) {
+    [[gnu::always_inline]] static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p,
+                                                        Space<T>& stretch) {
         const T normal_velocity = dot(c.velocity, c.normal);
         const T fn = linear_normal_force(c, normal_velocity, p);
         const Space<T> slip = c.velocity - normal_velocity * c.normal;
@@ -133,16 +129,14 @@ struct LinearSpringCoulomb {
     static constexpr LawInfo info{"f_n = k o - c v_n, f_t = -min(mu f_n, (2/7) m* |v_t| / dt) t", "overlap << radius",
                                   "Luding 1998, in Physics of dry granular media"};
     static constexpr int history = 0;
-    template <class T>
-    struct Parameters {
-        T stiffness, damping, damping_root, friction;
-    };
+    template <class T> struct Parameters { T stiffness, damping, damping_root, friction; };
     explicit LinearSpringCoulomb(Table& table);
     Parameters<double> parameters;
     double contact_time(double inverse_mass, double inverse_radius, double speed) const;
 
     template <class T>
-    [[gnu::always_inline]] static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p, Space<T>& /*stretch*/) {
+    [[gnu::always_inline]] static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p,
+                                                        Space<T>& /*stretch*/) {
         const T zero = broadcast<T>(0.0);
         const T normal_velocity = dot(c.velocity, c.normal);
         const T fn = linear_normal_force(c, normal_velocity, p);
@@ -165,8 +159,7 @@ struct HertzMindlin {
         "f_n = 4/3 E* sqrt(R*) o^1.5 - alpha sqrt(m* k_h) o^0.25 v_n, f_t: S_t = 8 G* sqrt(R* o), |f_t| <= mu f_n",
         "overlap << radius", "Mindlin & Deresiewicz 1953; Tsuji et al. 1992, Powder Technol. 71, 239"};
     static constexpr int history = 3;
-    template <class T>
-    struct Parameters {
+    template <class T> struct Parameters {
         T modulus;       // E* [Pa]
         T shear_modulus; // G* [Pa]
         T damping;       // alpha [-]
@@ -177,7 +170,8 @@ struct HertzMindlin {
     double contact_time(double inverse_mass, double inverse_radius, double speed) const;
 
     template <class T>
-    [[gnu::always_inline]] static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p, Space<T>& stretch) {
+    [[gnu::always_inline]] static ContactForce<T> force(const Contact<T>& c, const Parameters<T>& p,
+                                                        Space<T>& stretch) {
         const T zero = broadcast<T>(0.0), one = broadcast<T>(1.0);
         const T overlap = larger(c.overlap, zero);
         const T patch = square_root(overlap / c.inverse_radius); // contact radius sqrt(R* o) [m]
@@ -201,8 +195,8 @@ struct HertzMindlin {
 
 using ContactLaw = std::variant<NoContact, LinearSpring, LinearSpringCoulomb, HertzMindlin>;
 
-/// Shortest time of a contact [s]: half an oscillation at impact speed `speed` [m/s]. Only Hertz depends on the speed, and
-/// reckons with overlaps of 1e-3 of the reduced radius at least.
+/// Shortest time of a contact [s]: half an oscillation at impact speed `speed` [m/s]. Only Hertz depends on the speed,
+/// and reckons with overlaps of 1e-3 of the reduced radius at least.
 inline double contact_time(const ContactLaw& law, double inverse_mass, double inverse_radius, double speed) {
     return std::visit([&](const auto& l) { return l.contact_time(inverse_mass, inverse_radius, speed); }, law);
 }

@@ -14,13 +14,11 @@ namespace plumb {
 namespace {
 
 /// Bitwise equality of two laws of one type: their parameters are plain numbers.
-template <class Law>
-bool same(const Law& a, const Law& b) {
+template <class Law> bool same(const Law& a, const Law& b) {
     return std::memcmp(&a.parameters, &b.parameters, sizeof a.parameters) == 0;
 }
 
-template <class Variant>
-bool same_law(const Variant& a, const Variant& b) {
+template <class Variant> bool same_law(const Variant& a, const Variant& b) {
     return a.index() == b.index() && std::visit(
                                          [&](const auto& law) {
                                              using Law = std::decay_t<decltype(law)>;
@@ -62,8 +60,8 @@ MaterialContact read_contact(Table table) {
 }
 
 ContactModel contact_model(const std::vector<std::string>& names,
-                           const std::vector<std::optional<MaterialContact>>& own,
-                           std::size_t groups, const std::vector<PairContact>& pairs, const std::string& file) {
+                           const std::vector<std::optional<MaterialContact>>& own, std::size_t groups,
+                           const std::vector<PairContact>& pairs, const std::string& file) {
     const std::size_t n = names.size();
     std::map<std::pair<std::string, std::string>, const MaterialContact*> given;
     for (const PairContact& pair : pairs) {
@@ -71,7 +69,8 @@ ContactModel contact_model(const std::vector<std::string>& names,
             if (std::find(names.begin(), names.end(), name) == names.end())
                 throw InputError(fmt::format("{}: contact.between: there is no \"{}\"", file, name));
         if (given.count({pair.a, pair.b}))
-            throw InputError(fmt::format("{}: contact.between: \"{}\" and \"{}\" are given twice", file, pair.a, pair.b));
+            throw InputError(
+                fmt::format("{}: contact.between: \"{}\" and \"{}\" are given twice", file, pair.a, pair.b));
         given[{pair.a, pair.b}] = given[{pair.b, pair.a}] = &pair.laws;
     }
     std::vector<const ContactLaw*> contact;

@@ -12,8 +12,7 @@
 namespace plumb {
 
 /// Parameters of one law for all pairs of materials: entry a * materials + b. `uniform` if all entries are the same.
-template <class Law>
-struct PairLaws {
+template <class Law> struct PairLaws {
     std::int32_t materials = 0;
     std::vector<Law> laws;
     bool uniform = true;
@@ -21,12 +20,8 @@ struct PairLaws {
 };
 
 namespace detail {
-template <class Variant>
-struct PairVariant;
-template <class... Laws>
-struct PairVariant<std::variant<Laws...>> {
-    using type = std::variant<PairLaws<Laws>...>;
-};
+template <class Variant> struct PairVariant;
+template <class... Laws> struct PairVariant<std::variant<Laws...>> { using type = std::variant<PairLaws<Laws>...>; };
 } // namespace detail
 
 struct ContactModel {
@@ -50,11 +45,12 @@ struct PairContact {
     MaterialContact laws;
 };
 
-/// Fills the table of pairs. `names` and `own` list the materials: groups first, then walls. A wall without a table of its
-/// own ("as_grains") touches every grain as that grain touches its like; a wall with one uses it for all grains, unless a
+/// Fills the table of pairs. `names` and `own` list the materials: groups first, then walls. A wall without a table of
+/// its own ("as_grains") touches every grain as that grain touches its like; a wall with one uses it for all grains,
+/// unless a
 /// [[contact]] says otherwise. InputError if two unlike groups have no [[contact]], or if laws are mixed.
 ContactModel contact_model(const std::vector<std::string>& names,
-                           const std::vector<std::optional<MaterialContact>>& own,
-                           std::size_t groups, const std::vector<PairContact>& pairs, const std::string& file);
+                           const std::vector<std::optional<MaterialContact>>& own, std::size_t groups,
+                           const std::vector<PairContact>& pairs, const std::string& file);
 
 } // namespace plumb

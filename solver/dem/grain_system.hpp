@@ -29,10 +29,10 @@ struct GrainSystem {
     Neighbours neighbours;
     WallContacts wall_contacts;
     std::vector<Injected> injected; // one per injector
-    std::int64_t step = 0; // steps done
-    double time = 0.0;     // step * dt [s]
-    double listed_time = 0.0; // when the neighbour and wall lists were built [s]
-    bool started = false;     // the lists and accelerations exist
+    std::int64_t step = 0;          // steps done
+    double time = 0.0;              // step * dt [s]
+    double listed_time = 0.0;       // when the neighbour and wall lists were built [s]
+    bool started = false;           // the lists and accelerations exist
 };
 
 } // namespace plumb

@@ -20,9 +20,7 @@ struct Cells {
         const auto c = static_cast<std::int32_t>(std::floor(x * inverse_width[axis]));
         return std::clamp(c, 0, n[static_cast<std::size_t>(axis)] - 1);
     }
-    std::int32_t of(const Vec3& x) const {
-        return (along(2, x[2]) * n[1] + along(1, x[1])) * n[0] + along(0, x[0]);
-    }
+    std::int32_t of(const Vec3& x) const { return (along(2, x[2]) * n[1] + along(1, x[1])) * n[0] + along(0, x[0]); }
 };
 
 Cells sized_cells(const Domain& domain, double cutoff, std::size_t grains) {
@@ -49,7 +47,8 @@ std::vector<std::int32_t> sort_by_cell(Cells& cells, Grains& grains) {
     std::vector<std::int32_t> next(cells.begin.begin(), cells.begin.end() - 1);
     std::vector<std::int32_t> order(n);
     for (const std::int32_t place : positions_of_ids(grains)) // ascending id: the sort is stable in id
-        order[static_cast<std::size_t>(next[static_cast<std::size_t>(cell[static_cast<std::size_t>(place)])]++)] = place;
+        order[static_cast<std::size_t>(next[static_cast<std::size_t>(cell[static_cast<std::size_t>(place)])]++)] =
+            place;
     reorder(grains, order);
     return order;
 }
@@ -83,7 +82,8 @@ Around around(std::int32_t c, std::int32_t n, bool periodic, double size) {
 
 void collect(const Cells& cells, const Domain& domain, std::int32_t cell, std::vector<Stretch>& ranges) {
     ranges.clear();
-    const std::int32_t cx = cell % cells.n[0], cy = cell / cells.n[0] % cells.n[1], cz = cell / (cells.n[0] * cells.n[1]);
+    const std::int32_t cx = cell % cells.n[0], cy = cell / cells.n[0] % cells.n[1],
+                       cz = cell / (cells.n[0] * cells.n[1]);
     const Around xs = around(cx, cells.n[0], domain.periodic[0], domain.size[0]);
     const Around ys = around(cy, cells.n[1], domain.periodic[1], domain.size[1]);
     const Around zs = around(cz, cells.n[2], domain.periodic[2], domain.size[2]);
@@ -100,7 +100,8 @@ void collect(const Cells& cells, const Domain& domain, std::int32_t cell, std::v
 }
 
 bool excluded(const std::vector<GrainGroup>& groups, std::int32_t a, std::int32_t b) {
-    const Motion first = groups[static_cast<std::size_t>(a)].motion, second = groups[static_cast<std::size_t>(b)].motion;
+    const Motion first = groups[static_cast<std::size_t>(a)].motion,
+                 second = groups[static_cast<std::size_t>(b)].motion;
     return (first == Motion::fixed && second == Motion::fixed) || (a == b && first == Motion::block);
 }
 
@@ -113,9 +114,8 @@ void search(const Cells& cells, const Grains& grains, const std::vector<GrainGro
             double skin, std::size_t begin, std::size_t end, Found& found) {
     std::vector<Stretch> ranges;
     std::int32_t cell = -1;
-    const bool any_excluded = std::any_of(groups.begin(), groups.end(), [](const GrainGroup& g) {
-        return g.motion != Motion::free;
-    });
+    const bool any_excluded =
+        std::any_of(groups.begin(), groups.end(), [](const GrainGroup& g) { return g.motion != Motion::free; });
     const bool narrow = cells.n[0] < 3 || cells.n[1] < 3 || cells.n[2] < 3;
     for (std::size_t i = begin; i < end; ++i) {
         const std::int32_t now = cells.of(grains.x[i]);
@@ -182,7 +182,8 @@ void mark_crossings(Neighbours& list, const Grains& grains, const Domain& domain
     const Vec3 half = 0.5 * domain.size;
     parallel_for(list.crosses.size(), [&](std::size_t block) {
         for (std::size_t p = 8 * block; p < std::min(list.count, 8 * block + 8); ++p) {
-            const Vec3 dx = grains.x[static_cast<std::size_t>(list.i[p])] - grains.x[static_cast<std::size_t>(list.j[p])];
+            const Vec3 dx =
+                grains.x[static_cast<std::size_t>(list.i[p])] - grains.x[static_cast<std::size_t>(list.j[p])];
             for (int c = 0; c < 3; ++c)
                 if (domain.periodic[static_cast<std::size_t>(c)] && std::abs(dx[c]) > half[c]) list.crosses[block] = 1;
         }
@@ -210,9 +211,8 @@ std::vector<RememberedContact> remembered_contacts(const Neighbours& list, const
     if (list.history == 0) return memory;
     memory.reserve(list.count);
     for (std::size_t p = 0; p < list.count; ++p) {
-        RememberedContact contact{grains.id[static_cast<std::size_t>(list.i[p])],
-                                  grains.id[static_cast<std::size_t>(list.j[p])],
-                                  {}};
+        RememberedContact contact{
+            grains.id[static_cast<std::size_t>(list.i[p])], grains.id[static_cast<std::size_t>(list.j[p])], {}};
         bool any = false;
         for (int h = 0; h < list.history; ++h) {
             contact.stretch[static_cast<std::size_t>(h)] = list.remembered(p, h);

@@ -14,7 +14,8 @@ namespace plumb {
 /// What a contact gives to its two grains, one cache line: force on i (fx fy fz), torque per radius (tx ty tz), 0, 0.
 using PairForce = Pack;
 
-/// One cache line of a grain as the sweep over pairs reads it; the velocity is the one predicted for the end of the step.
+/// One cache line of a grain as the sweep over pairs reads it; the velocity is the one predicted for the end of the
+/// step.
 struct alignas(64) GrainRecord {
     double x, y, z, radius, vx, vy, vz, inverse_mass;
 };
@@ -31,10 +32,10 @@ using PairCouple [[gnu::vector_size(32)]] = double;
 /// pure function of the positions it was built for (Grains::x_listed) and of the ids, so it is never saved: a resumed
 /// run builds the same one again.
 struct Neighbours {
-    double skin = 0.0;             // [m]; the list holds until a grain has moved skin / 2
-    std::size_t count = 0;         // candidate pairs without padding
-    Field<std::int32_t> i, j;      // [padded]
-    std::vector<std::int32_t> own; // [n + 1] pairs own[k] .. own[k+1]-1 have i = k
+    double skin = 0.0;                        // [m]; the list holds until a grain has moved skin / 2
+    std::size_t count = 0;                    // candidate pairs without padding
+    Field<std::int32_t> i, j;                 // [padded]
+    std::vector<std::int32_t> own;            // [n + 1] pairs own[k] .. own[k+1]-1 have i = k
     std::vector<std::int32_t> incoming_begin; // [n + 1] range in `incoming` of the pairs with j = k
     std::vector<std::int32_t> incoming;       // pair indices
     std::vector<std::uint8_t> crosses;        // [blocks] 1 if a pair of the block is nearest across a periodic side
@@ -64,8 +65,8 @@ struct RememberedContact {
 /// All non-zero memories of the list: for rebuilding it and for checkpoints.
 std::vector<RememberedContact> remembered_contacts(const Neighbours& list, const Grains& grains);
 
-/// Sorts the grains by (cell, id) and lists all candidate pairs, with the memory given for those that have one. Two fixed
-/// grains, or two of the same block, are never paired. Returns the new order: place k holds what was at order[k].
+/// Sorts the grains by (cell, id) and lists all candidate pairs, with the memory given for those that have one. Two
+/// fixed grains, or two of the same block, are never paired. Returns the new order: place k holds what was at order[k].
 std::vector<std::int32_t> rebuild(Neighbours& list, Grains& grains, const std::vector<GrainGroup>& groups,
                                   const Domain& domain, const std::vector<RememberedContact>& memory);
 

@@ -6,8 +6,7 @@
 
 namespace plumb {
 
-template <class T>
-struct Rolling {
+template <class T> struct Rolling {
     Space<T> normal;   // from j to i
     Space<T> rotation; // omega_i - omega_j without its part along the normal [rad/s]
     T normal_force;    // >= 0 [N]
@@ -20,10 +19,7 @@ struct NoRolling {
     static constexpr std::string_view name = "none";
     static constexpr LawInfo info{"m = 0", "any", "-"};
     static constexpr int history = 0;
-    template <class T>
-    struct Parameters {
-        T unused{};
-    };
+    template <class T> struct Parameters { T unused{}; };
     explicit NoRolling(Table& /*table*/) {}
     NoRolling() = default;
     Parameters<double> parameters;
@@ -35,8 +31,7 @@ struct ConstantTorque {
     static constexpr LawInfo info{"m = -mu_r R* f_n w/|w|, at most the couple that stops w in one step", "any",
                                   "Ai, Chen, Rotter & Ooi 2011, Powder Technol. 206, 269, model A"};
     static constexpr int history = 0;
-    template <class T>
-    struct Parameters {
+    template <class T> struct Parameters {
         T friction; // mu_r [-]
     };
     explicit ConstantTorque(Table& table) : parameters{table.number("friction", non_negative)} {}
@@ -55,11 +50,11 @@ struct ConstantTorque {
 /// Rolling spring and dashpot with a yield couple (type C of Ai et al. 2011): holds a pile at rest without creep.
 struct ElasticPlastic {
     static constexpr std::string_view name = "elastic_plastic";
-    static constexpr LawInfo info{"m = -(k_r s + c_r w), |k_r s| <= mu_r R* f_n, c_r = 2 zeta sqrt(k_r / (1/I_i + 1/I_j))",
-                                  "any", "Ai, Chen, Rotter & Ooi 2011, Powder Technol. 206, 269, model C"};
+    static constexpr LawInfo info{
+        "m = -(k_r s + c_r w), |k_r s| <= mu_r R* f_n, c_r = 2 zeta sqrt(k_r / (1/I_i + 1/I_j))", "any",
+        "Ai, Chen, Rotter & Ooi 2011, Powder Technol. 206, 269, model C"};
     static constexpr int history = 3;
-    template <class T>
-    struct Parameters {
+    template <class T> struct Parameters {
         T friction;  // mu_r [-]
         T stiffness; // k_r [N m/rad]
         T damping;   // zeta [-]

@@ -42,8 +42,12 @@ void apply_laws(WallContact& contact, const WallPoint& point, const Law& law, co
     if constexpr (!std::is_same_v<RollingLawType, NoRolling>) {
         const Vec3 omega = surface / grain.radius;
         const double r = grain.radius;
-        const Rolling<double> turning{n,          space(omega - omega.dot(point.normal) * point.normal),
-                                      std::max(f.normal, 0.0), r, 2.5 * grain.inverse_mass / (r * r), dt};
+        const Rolling<double> turning{n,
+                                      space(omega - omega.dot(point.normal) * point.normal),
+                                      std::max(f.normal, 0.0),
+                                      r,
+                                      2.5 * grain.inverse_mass / (r * r),
+                                      dt};
         Space<double> bend = remembered(contact, Law::history);
         contact.torque += vec(RollingLawType::torque(turning, rolling.parameters, bend));
         if constexpr (RollingLawType::history > 0) remember(contact, Law::history, bend);

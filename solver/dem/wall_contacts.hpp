@@ -15,9 +15,9 @@ namespace plumb {
 
 /// One contact point of a grain with a wall, with its memory and its last force.
 struct WallContact {
-    std::int32_t grain;   // id
-    std::int32_t wall;    // index
-    std::int32_t element; // of the wall
+    std::int32_t grain;              // id
+    std::int32_t wall;               // index
+    std::int32_t element;            // of the wall
     std::array<double, 6> stretch{}; // tangential, then rolling
     Vec3 force = Vec3::Zero();       // on the grain [N]
     Vec3 torque = Vec3::Zero();      // on the grain about its centre [N m]

@@ -16,7 +16,7 @@ namespace {
 
 /// An open file descriptor; close() errors are checked by `finish`, the destructor is for the error path.
 class Descriptor {
-  public:
+public:
     Descriptor(const std::string& path, int flags) : number_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
@@ -30,7 +30,7 @@ class Descriptor {
         return ::close(number) == 0;
     }
 
-  private:
+private:
     int number_;
 };
 
@@ -64,7 +64,8 @@ void publish(const std::string& path) {
     if (file.number() < 0) give_up("written");
     if (::fsync(file.number()) != 0 || !file.finish()) give_up("written");
     if (::rename(aside.c_str(), path.c_str()) != 0) give_up("replaced");
-    // The new name must survive a power cut as well; some file systems do not allow to flush a folder, which is no loss.
+    // The new name must survive a power cut as well; some file systems do not allow to flush a folder, which is no
+    // loss.
     const std::filesystem::path parent = std::filesystem::path(path).parent_path();
     const Descriptor folder(parent.empty() ? "." : parent.string(), O_RDONLY | O_DIRECTORY);
     if (folder.number() >= 0) ::fsync(folder.number());

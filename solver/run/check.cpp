@@ -58,6 +58,34 @@ Json grains_part(const Simulation& s) {
     return part;
 }
 
+/// Contact time of the smallest grains of every pair of materials, at 1 m/s where it depends on the speed (Hertz).
+Json contact_times(const GrainSystem& system) {
+    const std::size_t groups = system.groups.size();
+    std::vector<double> mass(groups, 0.0), radius(groups, 0.0);
+    const Grains& g = system.grains;
+    for (std::size_t k = 0; k < g.size(); ++k) {
+        const auto q = static_cast<std::size_t>(g.group[k]);
+        if (radius[q] == 0.0 || g.radius[k] < radius[q]) radius[q] = g.radius[k], mass[q] = g.mass[k];
+    }
+    Json times = Json::array();
+    for (std::size_t a = 0; a < groups; ++a)
+        for (std::size_t b = a; b < groups + system.walls.size(); ++b) {
+            const bool wall = b >= groups;
+            if (radius[a] == 0.0 || (!wall && radius[b] == 0.0)) continue;
+            const double inverse_mass = 1.0 / mass[a] + (wall ? 0.0 : 1.0 / mass[b]);
+            const double inverse_radius = 1.0 / radius[a] + (wall ? 0.0 : 1.0 / radius[b]);
+            const double time = std::visit(
+                [&](const auto& laws) {
+                    const auto& law = laws.of(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
+                    return law.contact_time(inverse_mass, inverse_radius, 1.0);
+                },
+                system.contact.contact);
+            const std::string& other = wall ? system.walls[b - groups].name : system.groups[b].name;
+            times.push_back({{"between", {system.groups[a].name, other}}, {"seconds", time}});
+        }
+    return times;
+}
+
 Json step_part(const Simulation& s) {
     const Timing& t = s.timing;
     Json part{{"step", t.dt}, {"ruling_limit", t.ruling}, {"limits", Json::object()}};
@@ -66,8 +94,9 @@ Json step_part(const Simulation& s) {
     part["steps"] = total_steps(t);
     part["steps_per_output"] = t.steps_per_output;
     part["outputs"] = t.outputs + 1;
-    part["contact_law"] =
-        std::visit([](const auto& pairs) { return law_name(ContactLaw(pairs.laws.front())); }, s.grains.contact.contact);
+    part["contact_law"] = std::visit([](const auto& pairs) { return law_name(ContactLaw(pairs.laws.front())); },
+                                     s.grains.contact.contact);
+    part["contact_times"] = contact_times(s.grains);
     return part;
 }
 
@@ -129,7 +158,8 @@ std::string seconds(const Json& value) {
 
 void print_grains(const Json& part, std::string& text) {
     text += fmt::format("grains          {}", part["count"].get<std::int64_t>());
-    if (part["injected_at_most"] > 0.0) text += fmt::format(" + up to {} injected", part["injected_at_most"].get<double>());
+    if (part["injected_at_most"] > 0.0)
+        text += fmt::format(" + up to {} injected", part["injected_at_most"].get<double>());
     text += fmt::format(", volume fraction {:.4g}\n", part["volume_fraction"].get<double>());
     for (const Json& g : part["groups"]) {
         text += fmt::format("  {:<14}{} of {} kg/m3", g["name"].get<std::string>(), g["count"].get<std::int64_t>(),
@@ -149,19 +179,23 @@ void print_time(const Json& part, std::string& text) {
     for (const auto& [name, limit] : part["limits"].items())
         text += fmt::format("  {:<14}{} ({})\n", name, seconds(limit["seconds"]), limit["formula"].get<std::string>());
     text += fmt::format("contact law     {}\n", part["contact_law"].get<std::string>());
+    for (const Json& t : part["contact_times"])
+        text += fmt::format("  {:<14}contact time {}\n",
+                            t["between"][0].get<std::string>() + " " + t["between"][1].get<std::string>(),
+                            seconds(t["seconds"]));
 }
 
 void print_fluid(const Json& part, std::string& text) {
     text += fmt::format("fluid           flow {}, drag {}\n", part["flow"].get<std::string>(),
                         part["drag"].get<std::string>());
     for (const Json& g : part["grains"])
-        text += fmt::format("  {:<14}d = {:.4g} m: tau_p = {:.4g} s (step/tau_p = {:.3g}), u_t = {:.4g} m/s, Re = {:.4g}{}, "
-                            "St = {:.4g} at impact, {:.4g} in the flow, Ga = {:.4g}, density ratio {:.4g}\n",
-                            g["group"].get<std::string>(), g["diameter"].get<double>(), g["tau_p"].get<double>(),
-                            g["step_over_tau_p"].get<double>(), g["terminal_velocity"].get<double>(),
-                            g["Re"].get<double>(), g["drag_law_in_range"].get<bool>() ? "" : " (outside the law's range)",
-                            g["St_impact"].get<double>(), g["St_flow"].get<double>(), g["Ga"].get<double>(),
-                            g["density_ratio"].get<double>());
+        text += fmt::format(
+            "  {:<14}d = {:.4g} m: tau_p = {:.4g} s (step/tau_p = {:.3g}), u_t = {:.4g} m/s, Re = {:.4g}{}, "
+            "St = {:.4g} at impact, {:.4g} in the flow, Ga = {:.4g}, density ratio {:.4g}\n",
+            g["group"].get<std::string>(), g["diameter"].get<double>(), g["tau_p"].get<double>(),
+            g["step_over_tau_p"].get<double>(), g["terminal_velocity"].get<double>(), g["Re"].get<double>(),
+            g["drag_law_in_range"].get<bool>() ? "" : " (outside the law's range)", g["St_impact"].get<double>(),
+            g["St_flow"].get<double>(), g["Ga"].get<double>(), g["density_ratio"].get<double>());
 }
 
 void print_remarks(const Json& part, std::string_view title, std::string& text) {
@@ -180,9 +214,10 @@ std::string check_report(const Run& run, bool json) {
     print_time(all["time"], text);
     if (all.contains("fluid")) print_fluid(all["fluid"], text);
     const Json& cost = all["cost"];
-    text += fmt::format("cost            about {:.3g} grain steps, {:.3g} MB, {:.3g} s at a nominal {:.2g} grain-steps/s a thread\n",
-                        cost["grain_steps"].get<double>(), 1e-6 * cost["memory_bytes"].get<double>(),
-                        cost["wall_s"].get<double>(), cost["nominal_rate"].get<double>());
+    text += fmt::format(
+        "cost            about {:.3g} grain steps, {:.3g} MB, {:.3g} s at a nominal {:.2g} grain-steps/s a thread\n",
+        cost["grain_steps"].get<double>(), 1e-6 * cost["memory_bytes"].get<double>(), cost["wall_s"].get<double>(),
+        cost["nominal_rate"].get<double>());
     print_remarks(all["missing"], "could matter", text);
     print_remarks(all["idle"], "idle", text);
     return text;

@@ -22,8 +22,7 @@ void write_field(Hdf5Writer& file, const std::string& name, const std::vector<Ve
     const auto* numbers = reinterpret_cast<const double*>(field.data());
     file.write(name, std::span(numbers, 3 * field.size()), {field.size(), 3});
 }
-template <class T>
-void write_field(Hdf5Writer& file, const std::string& name, const std::vector<T>& field) {
+template <class T> void write_field(Hdf5Writer& file, const std::string& name, const std::vector<T>& field) {
     file.write(name, field);
 }
 
@@ -92,7 +91,7 @@ void write_provenance(Hdf5Writer& file, const Run& run, const Cost& cost) {
 
 /// Reads one checkpoint; everything that does not fit together is damage.
 class Loader {
-  public:
+public:
     explicit Loader(const std::string& path) : file_(path) {
         if (!file_.has_attribute("/", "format") || file_.text("/", "format") != format_name)
             fail("is no plumb checkpoint");
@@ -103,7 +102,7 @@ class Loader {
     }
     Run load();
 
-  private:
+private:
     [[noreturn]] void fail(const std::string& what) const { throw IoError(fmt::format("{}: {}", file_.path(), what)); }
     void demand(bool holds, const char* what) const {
         if (!holds) fail(fmt::format("is damaged: {}", what));
@@ -122,8 +121,7 @@ class Loader {
         demand(value >= 0 && value < static_cast<std::int64_t>(count), what);
         return static_cast<std::int32_t>(value);
     }
-    template <class T>
-    void read_field(const std::string& name, std::vector<T>& field, std::size_t n) const;
+    template <class T> void read_field(const std::string& name, std::vector<T>& field, std::size_t n) const;
     void load_grains(GrainSystem& system) const;
     std::vector<RememberedContact> pairs(std::size_t n) const;
     std::vector<WallContact> walls(std::size_t n, std::size_t walls) const;
@@ -133,8 +131,7 @@ class Loader {
     Hdf5Reader file_;
 };
 
-template <class T>
-void Loader::read_field(const std::string& name, std::vector<T>& field, std::size_t n) const {
+template <class T> void Loader::read_field(const std::string& name, std::vector<T>& field, std::size_t n) const {
     field.resize(n);
     if constexpr (std::is_same_v<T, Vec3>) {
         const std::vector<double> values = doubles(name, 3 * n);
@@ -149,9 +146,8 @@ void Loader::read_field(const std::string& name, std::vector<T>& field, std::siz
 
 void Loader::load_grains(GrainSystem& system) const {
     const std::size_t n = file_.shape("grains/id").at(0);
-    for_each_field(system.grains, [&](const char* name, auto& field) {
-        read_field(fmt::format("grains/{}", name), field, n);
-    });
+    for_each_field(system.grains,
+                   [&](const char* name, auto& field) { read_field(fmt::format("grains/{}", name), field, n); });
     std::vector<bool> seen(n, false);
     for (const std::int32_t id : system.grains.id) {
         const auto k = static_cast<std::size_t>(index(id, n, "grains/id"));
@@ -275,7 +271,9 @@ void save_checkpoint(const std::string& path, const Run& run, const Cost& cost) 
 }
 
 Run load_checkpoint(const std::string& path) {
-    const auto damaged = [&](const std::exception& e) { return IoError(fmt::format("{}: is damaged: {}", path, e.what())); };
+    const auto damaged = [&](const std::exception& e) {
+        return IoError(fmt::format("{}: is damaged: {}", path, e.what()));
+    };
     try {
         return Loader(path).load();
     } catch (const nlohmann::json::exception& e) {

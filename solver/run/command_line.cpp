@@ -76,8 +76,10 @@ int compare(const Options& options) {
 
 void add_scene_options(CLI::App& command, Options& options) {
     command.add_option("scene", options.scene, "Scene file (TOML)")->required();
-    command.add_option("--set", options.overrides, "Change the scene: key.path=value, the value as in TOML; "
-                                                   "grains.0.diameter=1e-3 reaches into a list of tables")
+    command
+        .add_option("--set", options.overrides,
+                    "Change the scene: key.path=value, the value as in TOML; "
+                    "grains.0.diameter=1e-3 reaches into a list of tables")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
 }

@@ -59,8 +59,8 @@ std::optional<Difference> dataset_difference(const Pair& files, const std::strin
     const std::size_t width = shape_a.size() > 1 ? std::max<std::size_t>(shape_a[1], 1) : 1;
     if (at < std::min(a.size(), b.size())) {
         const double time = time_of(at / width);
-        return Difference{time, fmt::format("{} /{} at t = {:.17g} s, index {}: {:.17g} against {:.17g}", files.name, set,
-                                            time, shown_index(at, shape_a), a[at], b[at])};
+        return Difference{time, fmt::format("{} /{} at t = {:.17g} s, index {}: {:.17g} against {:.17g}", files.name,
+                                            set, time, shown_index(at, shape_a), a[at], b[at])};
     }
     if (shape_a == shape_b) return std::nullopt;
     const double time = time_of(at / width);
@@ -75,7 +75,9 @@ std::optional<Difference> name_difference(const Pair& files, std::vector<std::st
     std::set_symmetric_difference(names_a.begin(), names_a.end(), names_b.begin(), names_b.end(),
                                   std::back_inserter(only));
     // Provenance may differ, and so may which snapshots were listed before a kill.
-    const auto skipped = [](const std::string& n) { return n.rfind("provenance/", 0) == 0 || n.rfind("snapshots/", 0) == 0; };
+    const auto skipped = [](const std::string& n) {
+        return n.rfind("provenance/", 0) == 0 || n.rfind("snapshots/", 0) == 0;
+    };
     only.erase(std::remove_if(only.begin(), only.end(), skipped), only.end());
     if (!only.empty())
         return Difference{0.0, fmt::format("{} /{}: is in one of the two only", files.name, only.front())};
@@ -105,8 +107,7 @@ std::optional<Difference> series_difference(const Pair& files) {
 std::optional<Difference> state_difference(const Pair& files) {
     const std::int64_t step_a = files.a.integer("/", "step"), step_b = files.b.integer("/", "step");
     const double time = files.a.number("/", "time");
-    if (step_a != step_b)
-        return Difference{time, fmt::format("{}: step {} against {}", files.name, step_a, step_b)};
+    if (step_a != step_b) return Difference{time, fmt::format("{}: step {} against {}", files.name, step_a, step_b)};
     std::vector<std::string> sets;
     if (auto found = name_difference(files, sets)) return found;
     for (const std::string& set : sets)
@@ -117,7 +118,8 @@ std::optional<Difference> state_difference(const Pair& files) {
 std::set<std::string> snapshot_files(const std::string& folder) {
     std::set<std::string> names;
     std::error_code error;
-    for (fs::directory_iterator entry(folder + "/snapshots", error), end; !error && entry != end; entry.increment(error))
+    for (fs::directory_iterator entry(folder + "/snapshots", error), end; !error && entry != end;
+         entry.increment(error))
         if (entry->path().extension() == ".h5") names.insert("snapshots/" + entry->path().filename().string());
     return names;
 }

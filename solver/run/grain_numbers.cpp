@@ -68,9 +68,9 @@ void remark_on_lift(const FluidOnGrains& fluid, double diameter, std::vector<Rem
 }
 
 /// Contact laws of any pair that has a parameter for which `test` holds.
-template <class Pairs, class Test>
-bool any_law(const Pairs& pairs, Test&& test) {
-    return std::visit([&](const auto& table) { return std::any_of(table.laws.begin(), table.laws.end(), test); }, pairs);
+template <class Pairs, class Test> bool any_law(const Pairs& pairs, Test&& test) {
+    return std::visit([&](const auto& table) { return std::any_of(table.laws.begin(), table.laws.end(), test); },
+                      pairs);
 }
 
 void remark_on_idle_forces(const FluidOnGrains& fluid, const Domain& domain, std::vector<Remark>& remarks) {
@@ -82,8 +82,7 @@ void remark_on_idle_forces(const FluidOnGrains& fluid, const Domain& domain, std
         if ((name == SaffmanMei::name || name == LiAhmadi::name) && !has_gradient(fluid))
             remarks.push_back({name, "the prescribed flow has no gradient"});
     }
-    if (law_name(fluid.drag) == "none")
-        remarks.push_back({"exchange", "there is no drag to exchange"});
+    if (law_name(fluid.drag) == "none") remarks.push_back({"exchange", "there is no drag to exchange"});
 }
 
 void remark_on_idle_contacts(const GrainSystem& system, std::vector<Remark>& remarks) {

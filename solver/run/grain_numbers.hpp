@@ -25,7 +25,8 @@ struct GrainNumbers {
 /// The smallest and the largest grain of every group (one entry if they are the same). Empty without a fluid.
 std::vector<GrainNumbers> grain_numbers(const Simulation& simulation);
 
-/// Slip at which the drag of `fluid` carries the force `weight` [N] on a grain of `diameter` [m]; infinity without drag.
+/// Slip at which the drag of `fluid` carries the force `weight` [N] on a grain of `diameter` [m]; infinity without
+/// drag.
 double terminal_slip(const FluidOnGrains& fluid, double diameter, double eps, double weight);
 
 /// A model and why it is named.

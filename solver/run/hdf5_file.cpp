@@ -106,8 +106,8 @@ void Hdf5Writer::write_raw(const std::string& name, const void* data, std::size_
         H5Pset_fletcher32(layout.get());
     }
     const Hdf5Handle space = space_of(shape);
-    Hdf5Handle set(
-        H5Dcreate2(file_.get(), name.c_str(), type, space.get(), links.get(), layout.get(), H5P_DEFAULT), H5Dclose);
+    Hdf5Handle set(H5Dcreate2(file_.get(), name.c_str(), type, space.get(), links.get(), layout.get(), H5P_DEFAULT),
+                   H5Dclose);
     if (!set.valid()) fail();
     if (count > 0 && H5Dwrite(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) fail();
     if (!set.close()) fail();
@@ -160,10 +160,11 @@ void Hdf5Writer::finish() {
     publish(path_);
 }
 
-Hdf5Reader::Hdf5Reader(std::string path) : path_(std::move(path)), file_([this] {
-      prepare_library();
-      return Hdf5Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  }()) {
+Hdf5Reader::Hdf5Reader(std::string path)
+    : path_(std::move(path)), file_([this] {
+          prepare_library();
+          return Hdf5Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+      }()) {
     if (file_.valid()) return;
     if (::access(path_.c_str(), R_OK) != 0) fail_io(path_, "read", errno);
     throw IoError(fmt::format("{}: is not a complete HDF5 file", path_));

@@ -14,7 +14,7 @@ using Shape = std::vector<std::size_t>; // extent per dimension; empty for a sca
 
 /// Owns one identifier of the library.
 class Hdf5Handle {
-  public:
+public:
     using Close = herr_t (*)(hid_t);
     Hdf5Handle(hid_t id, Close closing) : id_(id), close_(closing) {}
     Hdf5Handle(Hdf5Handle&& other) noexcept : id_(other.id_), close_(other.close_) { other.id_ = -1; }
@@ -29,7 +29,7 @@ class Hdf5Handle {
     /// Closes now; false if that failed, which is how a full disk may show.
     bool close();
 
-  private:
+private:
     hid_t id_;
     Close close_;
 };
@@ -37,7 +37,7 @@ class Hdf5Handle {
 /// Writes a new file aside; only `finish` gives it its name. All members throw IoError with the system's reason, and a
 /// file that was not finished is removed. The bytes written depend on the data only (no times inside).
 class Hdf5Writer {
-  public:
+public:
     /// `checked`: all data carry checksums that are verified when they are read.
     explicit Hdf5Writer(std::string path, bool checked = false);
     Hdf5Writer(const Hdf5Writer&) = delete;
@@ -49,8 +49,7 @@ class Hdf5Writer {
     void write(const std::string& name, std::span<const std::int32_t> data, const Shape& shape);
     void write(const std::string& name, std::span<const std::int64_t> data, const Shape& shape);
     /// One-dimensional.
-    template <class T>
-    void write(const std::string& name, const std::vector<T>& data) {
+    template <class T> void write(const std::string& name, const std::vector<T>& data) {
         write(name, std::span<const T>(data), {data.size()});
     }
     /// The bytes of a text as a dataset; checked as any other.
@@ -63,7 +62,7 @@ class Hdf5Writer {
 
     void finish();
 
-  private:
+private:
     void write_raw(const std::string& name, const void* data, std::size_t count, hid_t type, const Shape& shape);
     void attribute_raw(const std::string& object, const std::string& name, hid_t type, const void* value);
     Hdf5Handle created_file() const;
@@ -74,9 +73,10 @@ class Hdf5Writer {
     Hdf5Handle file_;
 };
 
-/// Reads a file. All members throw IoError "<path>: ..." for a file or dataset that is absent, broken or of another kind.
+/// Reads a file. All members throw IoError "<path>: ..." for a file or dataset that is absent, broken or of another
+/// kind.
 class Hdf5Reader {
-  public:
+public:
     explicit Hdf5Reader(std::string path);
 
     bool has(const std::string& name) const;
@@ -94,7 +94,7 @@ class Hdf5Reader {
     std::int64_t integer(const std::string& object, const std::string& attribute) const;
     const std::string& path() const { return path_; }
 
-  private:
+private:
     Hdf5Handle dataset(const std::string& name) const;
     void read_raw(const std::string& name, hid_t type, void* data) const;
     Hdf5Handle attribute(const std::string& object, const std::string& name) const;

@@ -5,7 +5,7 @@ namespace plumb {
 
 /// While an object of this class lives, the first SIGINT or SIGTERM only sets a mark; a second one ends the process.
 class Interruption {
-  public:
+public:
     Interruption();
     ~Interruption();
     Interruption(const Interruption&) = delete;

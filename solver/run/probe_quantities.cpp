@@ -12,8 +12,7 @@ namespace plumb {
 namespace {
 
 /// One number per grain, in the order of ids.
-template <class Value>
-std::vector<double> by_id(const Sample& s, Value&& value) {
+template <class Value> std::vector<double> by_id(const Sample& s, Value&& value) {
     std::vector<double> values(s.place.size());
     parallel_for(values.size(), [&](std::size_t id) { values[id] = value(s.at(id)); });
     return values;
@@ -73,8 +72,8 @@ double GrainMeanPosition::operator()(const Sample& s) const {
 }
 
 double GrainMeanVelocity::operator()(const Sample& s) const {
-    const double sum = s.sum(
-        0.0, [&](std::size_t k) { return members.contain(s.grains, k) ? component.of(s.grains.v[k]) : 0.0; });
+    const double sum =
+        s.sum(0.0, [&](std::size_t k) { return members.contain(s.grains, k) ? component.of(s.grains.v[k]) : 0.0; });
     return sum / members.count(s);
 }
 
@@ -125,7 +124,8 @@ double GrainAngularMomentum::operator()(const Sample& s) const {
     const Grains& g = s.grains;
     return s.sum(0.0, [&](std::size_t k) {
         if (!members.contain(g, k)) return 0.0;
-        return component.of(g.mass[k] * g.x[k].cross(g.v[k]) + sphere_inertia(g.mass[k], 2.0 * g.radius[k]) * g.omega[k]);
+        return component.of(g.mass[k] * g.x[k].cross(g.v[k]) +
+                            sphere_inertia(g.mass[k], 2.0 * g.radius[k]) * g.omega[k]);
     });
 }
 

@@ -216,9 +216,10 @@ struct WallForce {
 /// Keys `lower`, `upper`: a box. Along an axis where it spans the whole domain it also counts what sticks out there.
 struct PackingFraction {
     static constexpr std::string_view name = "packing_fraction", units = "1";
-    static constexpr LawInfo info{"volume of the spheres in the box from `lower` to `upper` / its volume; exact for slabs, "
-                                  "1e-6 of a sphere at edges; overlaps of spheres count twice",
-                                  "any", "definition"};
+    static constexpr LawInfo info{
+        "volume of the spheres in the box from `lower` to `upper` / its volume; exact for slabs, "
+        "1e-6 of a sphere at edges; overlaps of spheres count twice",
+        "any", "definition"};
     Vec3 lower, upper;
     explicit PackingFraction(Table& table) : lower(table.vector("lower")), upper(table.vector("upper")) {}
     void bind(const Simulation& s, const Table& t) const;

@@ -38,8 +38,7 @@ std::int64_t steps_between_records(Table& table, const Timing& timing) {
 }
 
 /// As make_family, by the key "quantity".
-template <std::size_t... I>
-ProbeQuantity made_quantity(Table& table, std::index_sequence<I...> /*members*/) {
+template <std::size_t... I> ProbeQuantity made_quantity(Table& table, std::index_sequence<I...> /*members*/) {
     const std::string name = table.text("quantity");
     std::optional<ProbeQuantity> made;
     const auto attempt = [&]<class Quantity>(std::type_identity<Quantity> /*type*/) {

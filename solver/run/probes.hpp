@@ -12,7 +12,7 @@ namespace plumb {
 struct Probe {
     std::string name;
     ProbeQuantity quantity;
-    std::int64_t steps = 1; // between two records
+    std::int64_t steps = 1;    // between two records
     std::vector<double> time;  // [s], one per record
     std::vector<double> value; // `width` per record
     std::size_t width = 1;     // numbers per record: 1, or the number of grains
@@ -23,7 +23,8 @@ struct Probe {
 };
 
 /// Reads the [[probe]] tables. InputError for an unknown quantity, names that are used twice or not made of
-/// letters, digits, "_", "-" and ".", an interval that is not a whole number of steps, or whatever the quantity refuses.
+/// letters, digits, "_", "-" and ".", an interval that is not a whole number of steps, or whatever the quantity
+/// refuses.
 std::vector<Probe> read_probes(Scene& scene, const Simulation& simulation);
 
 /// Appends the value of every probe that is due now. Throws nothing.

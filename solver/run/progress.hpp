@@ -10,7 +10,7 @@ namespace plumb {
 
 /// On a terminal one line that is redrawn, else one line per output interval; nothing when quiet. Writes to stdout.
 class Progress {
-  public:
+public:
     Progress(bool quiet, const Run& run);
 
     /// After some steps that did `updates` grain steps.
@@ -20,14 +20,14 @@ class Progress {
     /// One last line.
     void end(const std::string& text);
 
-  private:
+private:
     using Clock = std::chrono::steady_clock;
     std::string line(const Run& run) const;
 
     bool quiet_;
     bool terminal_;
     std::int64_t first_step_;
-    double updates_ = 0.0; // grain steps of this process
+    double updates_ = 0.0;  // grain steps of this process
     std::size_t shown_ = 0; // length of the line on the terminal
     Clock::time_point start_ = Clock::now(), drawn_ = start_;
 };

@@ -41,9 +41,7 @@ Cost CostMeter::now() const {
     return cost;
 }
 
-std::string iso_time() {
-    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-}
+std::string iso_time() { return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))); }
 
 std::string version_text() {
     const std::string commit(build_info::commit.empty() ? "no commit" : build_info::commit.substr(0, 12));
@@ -77,8 +75,8 @@ std::string provenance_json(const Scene& scene, const Simulation& simulation, co
     for (const StepLimit& limit : simulation.timing.limits) j["limits"][limit.name] = limit.seconds;
     if (simulation.fluid) {
         const RangeUse& use = simulation.fluid->range_use;
-        j["drag_range"] = {{"re_min", use.re_min}, {"re_max", use.re_max}, {"inside", use.inside},
-                           {"outside", use.outside}};
+        j["drag_range"] = {
+            {"re_min", use.re_min}, {"re_max", use.re_max}, {"inside", use.inside}, {"outside", use.outside}};
     }
     j["exit"] = exit ? nlohmann::ordered_json(*exit) : nlohmann::ordered_json(nullptr);
     // A path may be no valid UTF-8; JSON must be.

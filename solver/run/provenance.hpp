@@ -19,12 +19,12 @@ struct Cost {
 
 /// Measures the cost of this process from its construction on.
 class CostMeter {
-  public:
+public:
     explicit CostMeter(Cost before = {}) : before_(before) {}
     void add_updates(double updates) { before_.updates += updates; }
     Cost now() const;
 
-  private:
+private:
     Cost before_;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

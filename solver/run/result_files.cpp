@@ -58,8 +58,7 @@ std::vector<double> in_id_order(const std::vector<Vec3>& field, const std::vecto
     return values;
 }
 
-template <class T>
-std::vector<T> in_id_order(const std::vector<T>& field, const std::vector<std::int32_t>& place) {
+template <class T> std::vector<T> in_id_order(const std::vector<T>& field, const std::vector<std::int32_t>& place) {
     std::vector<T> values;
     values.reserve(place.size());
     for (const std::int32_t k : place) values.push_back(field[static_cast<std::size_t>(k)]);
@@ -99,8 +98,8 @@ void check_result_folder(const std::string& path) {
     const bool empty = fs::is_empty(path, error);
     if (error) throw IoError(fmt::format("{}: {}", path, error.message()));
     if (!empty)
-        throw InputError(fmt::format("{}: the folder holds something that is no plumb result; choose another one with -o",
-                                     path));
+        throw InputError(
+            fmt::format("{}: the folder holds something that is no plumb result; choose another one with -o", path));
 }
 
 ResultFolder::ResultFolder(std::string path) : path_(std::move(path)) {}
@@ -165,8 +164,8 @@ void write_snapshot(const std::string& path, const Simulation& simulation) {
     file.write("grains/diameter", diameter);
     file.write("grains/id", in_id_order(g.id, place));
     file.write("grains/group", in_id_order(g.group, place));
-    for (const auto& [name, units] : {std::pair{"x", "m"}, {"v", "m/s"}, {"omega", "rad/s"}, {"diameter", "m"},
-                                      {"id", "1"}, {"group", "1"}})
+    for (const auto& [name, units] :
+         {std::pair{"x", "m"}, {"v", "m/s"}, {"omega", "rad/s"}, {"diameter", "m"}, {"id", "1"}, {"group", "1"}})
         file.attribute(fmt::format("grains/{}", name), "units", std::string(units));
     file.attribute("/", "time", static_cast<double>(simulation.grains.step) * simulation.timing.dt);
     file.attribute("/", "time_units", std::string("s"));

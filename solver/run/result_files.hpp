@@ -1,8 +1,9 @@
 // The result folder: which files there are and how they are laid out.
 //
-//   run.json               provenance and cost                 series.h5    /<probe>/time [nt], /<probe>/value [nt] or [nt, n]
-//   snapshots/NNNNNN.h5    /grains/x v omega diameter id group, in the order of ids, one file per output
-//   checkpoint.h5          everything `plumb resume` needs     result.xdmf  index of the snapshots for ParaView and PyVista
+//   run.json               provenance and cost                 series.h5    /<probe>/time [nt], /<probe>/value [nt] or
+//   [nt, n] snapshots/NNNNNN.h5    /grains/x v omega diameter id group, in the order of ids, one file per output
+//   checkpoint.h5          everything `plumb resume` needs     result.xdmf  index of the snapshots for ParaView and
+//   PyVista
 #pragma once
 
 #include "run/probes.hpp"
@@ -15,7 +16,7 @@ namespace plumb {
 
 /// The folder of one run, held by this process alone while the object lives.
 class ResultFolder {
-  public:
+public:
     /// Makes the folder, or empties the plumb result that is in it: its files are removed, run.json last, others stay.
     /// InputError for a folder that holds something else or is in use by another run; IoError as the system says.
     static ResultFolder fresh(const std::string& path);
@@ -31,7 +32,7 @@ class ResultFolder {
     const std::string& path() const { return path_; }
     std::string file(const std::string& name) const { return path_ + "/" + name; }
 
-  private:
+private:
     explicit ResultFolder(std::string path);
     void lock();
 
@@ -39,7 +40,8 @@ class ResultFolder {
     int lock_ = -1;
 };
 
-/// InputError if `path` could not become a result folder: a file, or a folder with something else in it. Changes nothing.
+/// InputError if `path` could not become a result folder: a file, or a folder with something else in it. Changes
+/// nothing.
 void check_result_folder(const std::string& path);
 
 struct SnapshotEntry {

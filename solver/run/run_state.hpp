@@ -15,12 +15,13 @@ struct Run {
     Simulation simulation;
     std::vector<Probe> probes;
     std::vector<SnapshotEntry> snapshots;
-    std::string start; // ISO time of the first start
-    Cost cost;         // before this process took over
+    std::string start;  // ISO time of the first start
+    Cost cost;          // before this process took over
     bool begun = false; // the initial state has been recorded
 };
 
-/// Everything `scene` describes, ready for its first step. InputError for whatever cannot be meant, unread keys included.
+/// Everything `scene` describes, ready for its first step. InputError for whatever cannot be meant, unread keys
+/// included.
 inline Run make_run(Scene scene) {
     Simulation simulation = make_simulation(scene);
     std::vector<Probe> probes = read_probes(scene, simulation);

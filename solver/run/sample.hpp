@@ -12,7 +12,7 @@
 namespace plumb {
 
 class Sample {
-  public:
+public:
     explicit Sample(const Simulation& state)
         : simulation(state), grains(state.grains.grains), place(positions_of_ids(state.grains.grains)) {}
 
@@ -31,12 +31,11 @@ class Sample {
         return *walls_;
     }
     /// Sum of term(k) over all grains in the order of their ids; k is the place.
-    template <class T, class Term>
-    T sum(const T& zero, Term&& term) const {
+    template <class T, class Term> T sum(const T& zero, Term&& term) const {
         return ordered_sum(place.size(), zero, [&](std::size_t id) -> T { return term(at(id)); });
     }
 
-  private:
+private:
     mutable std::optional<std::vector<TouchingPair>> pairs_;
     mutable std::optional<std::vector<TouchingWall>> walls_;
 };

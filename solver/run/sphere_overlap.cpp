@@ -90,8 +90,8 @@ double integral_of_slices(double radius, const Vec3& lower, const Vec3& upper) {
         for (std::size_t p = 0; p < GaussRule::points; ++p) {
             const double angle = begin + half * (1.0 + rule.node[p]);
             const double slice = radius * std::cos(angle);
-            volume += half * rule.weight[p] * slice *
-                      disc_rectangle_overlap(slice, lower[0], upper[0], lower[1], upper[1]);
+            volume +=
+                half * rule.weight[p] * slice * disc_rectangle_overlap(slice, lower[0], upper[0], lower[1], upper[1]);
         }
     }
     return volume;

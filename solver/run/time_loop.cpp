@@ -26,25 +26,24 @@ double wall_time() {
 
 /// Keeps a file from being written too often.
 class Pace {
-  public:
+public:
     explicit Pace(double interval) : interval_(interval) {}
     bool due() const { return wall_time() >= next_; }
-    template <class Write>
-    void write(Write&& action) {
+    template <class Write> void write(Write&& action) {
         const double begin = wall_time();
         action();
         const double end = wall_time();
         next_ = end + std::max(interval_, least_pause * (end - begin));
     }
 
-  private:
+private:
     double interval_;
     double next_ = 0.0;
 };
 
 /// Everything a run writes, and when.
 class Output {
-  public:
+public:
     Output(Run& run, const ResultFolder& folder) : run_(run), folder_(folder), meter_(run.cost) {}
 
     void count(double updates) { meter_.add_updates(updates); }
@@ -82,7 +81,7 @@ class Output {
 
     Cost cost() const { return meter_.now(); }
 
-  private:
+private:
     void add_snapshot(const std::string& name) {
         make_folder(folder_.file("snapshots"));
         write_snapshot(folder_.file(name), run_.simulation);
@@ -108,22 +107,24 @@ class Output {
 
 /// Takes the run to step `goal`, or less far if it is to be interrupted, a short time after another.
 class Stepper {
-  public:
+public:
     void advance_to(std::int64_t goal, Run& run, Output& output, Progress& progress, const Interruption& interruption) {
         while (run.simulation.grains.step < goal && !interruption.requested()) {
             const std::int64_t steps = std::min(goal - run.simulation.grains.step, chunk_);
             const double begin = wall_time();
             advance(run.simulation, steps);
             const double spent = std::max(wall_time() - begin, 1e-9);
-            const double updates = static_cast<double>(steps) * static_cast<double>(run.simulation.grains.grains.size());
+            const double updates =
+                static_cast<double>(steps) * static_cast<double>(run.simulation.grains.grains.size());
             output.count(updates);
             progress.show(run, updates);
             const double affordable = static_cast<double>(steps) * chunk_time / spent;
-            chunk_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::min(affordable, 4.0 * static_cast<double>(chunk_))));
+            chunk_ = std::max<std::int64_t>(
+                1, static_cast<std::int64_t>(std::min(affordable, 4.0 * static_cast<double>(chunk_))));
         }
     }
 
-  private:
+private:
     std::int64_t chunk_ = 1;
 };
 

@@ -66,9 +66,6 @@ std::array<double, 6> pair_memory(const Neighbours& list, std::size_t pair) {
     return memory;
 }
 
-/// The springs of the initial state have not been advanced by any step.
-double spring_step(const GrainSystem& system, double dt) { return system.step == 0 ? 0.0 : dt; }
-
 } // namespace
 
 double elastic_energy(const ContactLaw& law, double overlap, double inverse_radius, double slide_sq) {
@@ -91,8 +88,7 @@ std::vector<TouchingPair> touching_pairs(const GrainSystem& system, double dt) {
         const Sliding sliding{tangential(velocity, normal), tangential(g.omega[i] - g.omega[j], normal)};
         const double energy =
             contact_energy(system.contact, g.group[i], g.group[j], reach - distance,
-                           1.0 / g.radius[i] + 1.0 / g.radius[j], pair_memory(list, p), sliding, normal,
-                           spring_step(system, dt));
+                           1.0 / g.radius[i] + 1.0 / g.radius[j], pair_memory(list, p), sliding, normal, dt);
         pairs.push_back({std::min(g.id[i], g.id[j]), std::max(g.id[i], g.id[j]), reach - distance, energy});
     }
     std::sort(pairs.begin(), pairs.end(), [](const TouchingPair& a, const TouchingPair& b) {
@@ -116,9 +112,8 @@ std::vector<TouchingWall> touching_walls(const GrainSystem& system, double dt) {
                     g.v[k] - wall.velocity - (point.distance / g.radius[k]) * surface.cross(point.normal);
                 const Sliding sliding{tangential(velocity, point.normal), tangential(g.omega[k], point.normal)};
                 const double overlap = g.radius[k] - point.distance;
-                const double energy =
-                    contact_energy(system.contact, g.group[k], wall.material, overlap, 1.0 / g.radius[k],
-                                   contact.stretch, sliding, point.normal, spring_step(system, dt));
+                const double energy = contact_energy(system.contact, g.group[k], wall.material, overlap,
+                                                     1.0 / g.radius[k], contact.stretch, sliding, point.normal, dt);
                 contacts.push_back({contact.grain, contact.wall, contact.element, overlap, energy, contact.force});
             };
             wall.touch(g.x[k], g.radius[k], system.time, note);

@@ -11,9 +11,9 @@ namespace plumb {
 
 namespace {
 
-// What a history force keeps per grain besides its exponentials: the slip before the step (x, y, z), the slip with which
-// it entered the fluid (x, y, z), the force at the start of the step without that of the entry (x, y, z), and the number
-// of steps since.
+// What a history force keeps per grain besides its exponentials: the slip before the step (x, y, z), the slip with
+// which it entered the fluid (x, y, z), the force at the start of the step without that of the entry (x, y, z), and the
+// number of steps since.
 constexpr std::size_t history_extra = 10;
 
 // Share of the history force taken at the end of the step; 1/2 is second order.
@@ -21,10 +21,10 @@ constexpr double theta = 0.5;
 
 /// Forcing of one grain before grains of a block share theirs.
 struct OneForcing {
-    double rate = 0.0;      // beta [1/s]
+    double rate = 0.0;         // beta [1/s]
     Vec3 other = Vec3::Zero(); // acceleration by all forces but drag [m/s2], contacts and gravity not included
-    Vec3 u = Vec3::Zero();  // fluid velocity at the middle of the step [m/s]
-    double re = 0.0;        // superficial, at the middle of the step
+    Vec3 u = Vec3::Zero();     // fluid velocity at the middle of the step [m/s]
+    double re = 0.0;           // superficial, at the middle of the step
     double eps = 1.0;
 };
 
@@ -37,8 +37,8 @@ LocalFluid local_fluid(const FluidOnGrains& f, const Domain& domain, const Vec3&
     return local;
 }
 
-/// Carries the history of one grain over the step that has just ended, and returns the force of the coming one that does
-/// not depend on its new velocity [N].
+/// Carries the history of one grain over the step that has just ended, and returns the force of the coming one that
+/// does not depend on its new velocity [N].
 Vec3 history_drive(const BassetKernel& kernel, double coefficient, std::span<double> memory, const Vec3& slip,
                    const Vec3& slip_change_of_fluid) {
     const auto states = memory.first(kernel.state_size());
@@ -53,7 +53,8 @@ Vec3 history_drive(const BassetKernel& kernel, double coefficient, std::span<dou
         kernel.advance(states, change);
     }
     slip_before = slip;
-    // The entry's force K entry/sqrt(t) is singular: its exact mean over the step, with implicit_coefficient = 2 K/sqrt(dt).
+    // The entry's force K entry/sqrt(t) is singular: its exact mean over the step, with implicit_coefficient = 2
+    // K/sqrt(dt).
     const Vec3 of_entry =
         (kernel.implicit_coefficient(coefficient) * (std::sqrt(steps + 1.0) - std::sqrt(steps))) * entry;
     steps += 1.0;
@@ -224,7 +225,8 @@ FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling) {
 
 void set_inertia(FluidOnGrains& fluid, GrainSystem& system, double dt) {
     Grains& g = system.grains;
-    if (fluid.history && (!fluid.kernel || fluid.kernel->step() != dt)) fluid.kernel = history_kernel(*fluid.history, dt);
+    if (fluid.history && (!fluid.kernel || fluid.kernel->step() != dt))
+        fluid.kernel = history_kernel(*fluid.history, dt);
     const std::optional<BassetKernel>& kernel = fluid.kernel;
     for (std::size_t k = 0; k < g.size(); ++k) {
         if (g.mobility[k] == 0.0) continue; // fixed
@@ -232,8 +234,7 @@ void set_inertia(FluidOnGrains& fluid, GrainSystem& system, double dt) {
         double inertia = g.mass[k];
         for (const OtherForce& law : fluid.forces) inertia += added_mass(law, fluid.density, d);
         if (kernel)
-            inertia += theta * dt *
-                       kernel->implicit_coefficient(basset_coefficient(fluid.density, fluid.viscosity, d));
+            inertia += theta * dt * kernel->implicit_coefficient(basset_coefficient(fluid.density, fluid.viscosity, d));
         g.mobility[k] = 1.0 / inertia;
     }
 }

@@ -34,9 +34,9 @@ struct FluidOnGrains {
     std::optional<BassetKernel> kernel; // of `history` for the step in use: set by set_inertia
 
     // what changes in time
-    FluidForcing forcing;                // by present order
-    std::vector<Vec3> last_drag;         // mean drag of the last step [N], by id
-    std::vector<Vec3> last_fluid_force;  // mean of all forces of the fluid in the last step [N], by id
+    FluidForcing forcing;               // by present order
+    std::vector<Vec3> last_drag;        // mean drag of the last step [N], by id
+    std::vector<Vec3> last_fluid_force; // mean of all forces of the fluid in the last step [N], by id
     RangeUse range_use;
 };
 

@@ -31,8 +31,7 @@ ContactModel read_contacts(Table& root, const GrainSystem& system, std::vector<T
     }
     for (std::size_t w = 0; w < wall_tables.size(); ++w) {
         names.push_back(system.walls[w].name);
-        if (wall_tables[w].type("contact") == toml::node_type::string &&
-            wall_tables[w].text("contact") == "as_grains")
+        if (wall_tables[w].type("contact") == toml::node_type::string && wall_tables[w].text("contact") == "as_grains")
             own.emplace_back(std::nullopt);
         else
             own.emplace_back(read_contact(wall_tables[w].law("contact")));
@@ -80,12 +79,11 @@ StepLimit drag_limit(const FluidOnGrains& fluid, const GrainSystem& system) {
     for (std::size_t k = 0; k < system.grains.size(); ++k) {
         const Vec3& x = system.grains.x[k];
         const double eps = porosity_at(fluid.porosity, x, system.domain);
-        const double slip = (std::visit([&](const auto& flow) { return flow(x, 0.0); }, fluid.flow).u -
-                             system.grains.v[k]).norm();
-        fastest = std::max(fastest, system.grains.mobility[k] * drag_resistance(fluid.drag, fluid.density,
-                                                                                fluid.viscosity,
-                                                                                2.0 * system.grains.radius[k], eps,
-                                                                                slip));
+        const double slip =
+            (std::visit([&](const auto& flow) { return flow(x, 0.0); }, fluid.flow).u - system.grains.v[k]).norm();
+        fastest =
+            std::max(fastest, system.grains.mobility[k] * drag_resistance(fluid.drag, fluid.density, fluid.viscosity,
+                                                                          2.0 * system.grains.radius[k], eps, slip));
     }
     return {"drag", fastest > 0.0 ? 2.0 / fastest : std::numeric_limits<double>::infinity(),
             "2 tau_p, explicit exchange only"};
@@ -117,8 +115,8 @@ void show_initial_forces(FluidOnGrains& fluid, const GrainSystem& system, double
 std::size_t inject_due(GrainSystem& system) {
     std::size_t added = 0;
     for (std::size_t q = 0; q < system.injectors.size(); ++q)
-        added += inject(system.grains, system.injected[q], system.injectors[q], system.groups, system.domain,
-                        system.time);
+        added +=
+            inject(system.grains, system.injected[q], system.injectors[q], system.groups, system.domain, system.time);
     return added;
 }
 

@@ -44,7 +44,8 @@ std::int64_t whole_steps(Table& time, double interval, double limit) {
 /// interval/dt when it is whole within rounding; InputError otherwise.
 std::int64_t whole_ratio(Table& time, std::string_view key, double interval, double dt, std::string_view of) {
     const double ratio = interval / dt;
-    if (!(ratio < most_steps)) time.fail(key, fmt::format("{} s is more than {:.0e} {} of {} s", interval, most_steps, of, dt));
+    if (!(ratio < most_steps))
+        time.fail(key, fmt::format("{} s is more than {:.0e} {} of {} s", interval, most_steps, of, dt));
     if (std::abs(ratio - std::nearbyint(ratio)) > 1e-9 * ratio || ratio < 0.5)
         time.fail(key, fmt::format("{} s is not a whole number of {} of {} s", interval, of, dt));
     return static_cast<std::int64_t>(std::nearbyint(ratio));
@@ -89,9 +90,8 @@ Timing timing(Table& time, std::vector<StepLimit> limits) {
             if (safety.has(limit.name)) limit.seconds *= safety.number(limit.name, positive);
     }
     t.limits = std::move(limits);
-    const auto least = std::min_element(t.limits.begin(), t.limits.end(), [](const StepLimit& a, const StepLimit& b) {
-        return a.seconds < b.seconds;
-    });
+    const auto least = std::min_element(t.limits.begin(), t.limits.end(),
+                                        [](const StepLimit& a, const StepLimit& b) { return a.seconds < b.seconds; });
     if (time.type("step") == toml::node_type::string) {
         time.choice("step", {"auto"});
         const double limit = least == t.limits.end() ? std::numeric_limits<double>::infinity() : least->seconds;

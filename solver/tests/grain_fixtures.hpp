@@ -24,8 +24,7 @@ inline Table table_of(std::string_view text, std::string path = "") {
 }
 
 /// The text of the InputError that f() throws; a failure of the test and "" when it throws none.
-template <class F>
-std::string message_of(F&& f) {
+template <class F> std::string message_of(F&& f) {
     try {
         f();
     } catch (const InputError& error) {
@@ -36,8 +35,7 @@ std::string message_of(F&& f) {
 }
 
 /// f() must throw an InputError of one line whose text has all `parts`.
-template <class F>
-void expect_error(F&& f, std::initializer_list<std::string_view> parts) {
+template <class F> void expect_error(F&& f, std::initializer_list<std::string_view> parts) {
     const std::string message = message_of(std::forward<F>(f));
     for (const std::string_view part : parts)
         EXPECT_NE(message.find(part), std::string::npos) << "\"" << part << "\" is not in: " << message;
@@ -52,12 +50,8 @@ inline MaterialContact contact_of(std::string_view text) {
     return made;
 }
 
-template <class Law>
-Law law_of(std::string_view text) {
-    return std::get<Law>(contact_of(text).contact);
-}
-template <class Law>
-Law rolling_of(std::string_view text) {
+template <class Law> Law law_of(std::string_view text) { return std::get<Law>(contact_of(text).contact); }
+template <class Law> Law rolling_of(std::string_view text) {
     Table table = table_of(text, "grains.contact.rolling");
     Law made(table);
     table.finish();
@@ -138,7 +132,8 @@ inline void add_cloud(GrainSystem& system, int count, double least, double large
         const Vec3 x = random_vector(random, 0.0, 1.0).cwiseProduct(system.domain.size);
         const Vec3 v = random_vector(random, -speed, speed);
         const Vec3 omega = random_vector(random, -spin, spin);
-        add(system, radius, x, v, omega, static_cast<std::int32_t>(k) % static_cast<std::int32_t>(system.groups.size()));
+        add(system, radius, x, v, omega,
+            static_cast<std::int32_t>(k) % static_cast<std::int32_t>(system.groups.size()));
     }
 }
 

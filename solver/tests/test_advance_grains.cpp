@@ -88,7 +88,8 @@ TEST(AdvanceGrains, FreeFlight) {
     }
 }
 
-// A grain that enters later must fly as exactly as one that was there from the start (no acceleration for its first step).
+// A grain that enters later must fly as exactly as one that was there from the start (no acceleration for its first
+// step).
 TEST(AdvanceGrains, AGrainAddedLaterFliesExactly) {
     GrainSystem s = system_of(box(Vec3::Constant(1.0), {}, Vec3(0.0, 0.0, -9.81)), elastic);
     add(s, radius, Vec3(0.2, 0.2, 0.9));
@@ -157,10 +158,11 @@ TEST(AdvanceGrains, FixedGrainsKeepTheirVelocity) {
 
 // A block whose grains follow their own forces, or that moves with the force of one grain only: it is one body.
 TEST(AdvanceGrains, BlocksMoveAsOneBody) {
-    GrainSystem s = system_of(box(Vec3::Constant(2e-2)), rough,
-                              {group_of("free"), group_of("block", 1500.0, true, Motion::block)});
+    GrainSystem s =
+        system_of(box(Vec3::Constant(2e-2)), rough, {group_of("free"), group_of("block", 1500.0, true, Motion::block)});
     const std::vector<Vec3> shape{{8e-3, 8e-3, 5e-3}, {9e-3, 8e-3, 5e-3}, {8e-3, 9e-3, 5e-3}, {8.5e-3, 8.5e-3, 5.6e-3}};
-    for (std::size_t k = 0; k < shape.size(); ++k) add(s, 4e-4 + 5e-5 * static_cast<double>(k), shape[k], Vec3::Zero(), Vec3::Zero(), 1);
+    for (std::size_t k = 0; k < shape.size(); ++k)
+        add(s, 4e-4 + 5e-5 * static_cast<double>(k), shape[k], Vec3::Zero(), Vec3::Zero(), 1);
     add(s, radius, Vec3(6.9e-3, 7.9e-3, 5e-3), Vec3(0.3, 0.0, 0.0));
     const Vec3 before = momentum(s.grains);
     advance_grains(s, 400, dt);
@@ -178,7 +180,8 @@ TEST(AdvanceGrains, BlocksMoveAsOneBody) {
 
 // Rotation that is switched off but still turns, or couples that then change the motion of the partner's spin.
 TEST(AdvanceGrains, RotationOff) {
-    GrainSystem s = system_of(box(Vec3::Constant(1e-2)), rough, {group_of("plain", 2500.0, false), group_of("turning")});
+    GrainSystem s =
+        system_of(box(Vec3::Constant(1e-2)), rough, {group_of("plain", 2500.0, false), group_of("turning")});
     add(s, radius, Vec3(4e-3, 5e-3, 5e-3), Vec3(0.1, 0.1, 0.0));
     add(s, radius, Vec3(4.99e-3, 5e-3, 5e-3), Vec3::Zero(), Vec3::Zero(), 1);
     advance_grains(s, 10, dt);

@@ -110,8 +110,9 @@ axis = "x"
 )";
 
 class CheckpointFiles : public testing::Test {
-  protected:
-    CheckpointFiles() : folder_((fs::path(testing::TempDir()) / ("plumb_checkpoint_" + std::to_string(::getpid()))).string()) {
+protected:
+    CheckpointFiles()
+        : folder_((fs::path(testing::TempDir()) / ("plumb_checkpoint_" + std::to_string(::getpid()))).string()) {
         fs::create_directories(folder_);
     }
     ~CheckpointFiles() override { fs::remove_all(folder_); }

@@ -53,7 +53,7 @@ struct Answer {
 };
 
 class CommandLine : public testing::Test {
-  protected:
+protected:
     CommandLine() : folder_((fs::path(testing::TempDir()) / ("plumb_cli_" + std::to_string(::getpid()))).string()) {
         fs::create_directories(folder_);
         std::ofstream(path("scene.toml")) << falling;
@@ -95,8 +95,9 @@ TEST_F(CommandLine, RunWritesAResult) {
     EXPECT_EQ(info["updates"], 100);
     EXPECT_EQ(info["step"], 1e-3);
     EXPECT_EQ(info["threads"], 1);
-    for (const char* key : {"version", "commit", "dirty", "compiler", "flags", "scene", "scene_hash", "scene_path",
-                            "overrides", "processor", "start", "wall_s", "cpu_s", "peak_bytes", "ruling_limit", "limits"})
+    for (const char* key :
+         {"version", "commit", "dirty", "compiler", "flags", "scene", "scene_hash", "scene_path", "overrides",
+          "processor", "start", "wall_s", "cpu_s", "peak_bytes", "ruling_limit", "limits"})
         EXPECT_TRUE(info.contains(key)) << key;
     EXPECT_GT(info["peak_bytes"], 1000000);
     EXPECT_EQ(answer({"diff", path("out"), path("out")}).code, 0);
@@ -110,7 +111,8 @@ TEST_F(CommandLine, QuietSaysNothing) {
 
 TEST_F(CommandLine, SetReachesTheScene) {
     EXPECT_EQ(answer({"run", "--set", "time.end=0.05", "--set", "grains.density=1000.0", path("scene.toml"), "-o",
-                      path("a"), "--quiet"}).code,
+                      path("a"), "--quiet"})
+                  .code,
               0);
     EXPECT_EQ(answer({"run", path("scene.toml"), "-o", path("b"), "--quiet"}).code, 0);
     const Answer a = answer({"diff", path("a"), path("b")});
@@ -128,7 +130,8 @@ TEST_F(CommandLine, InputErrorsWriteNothing) {
     EXPECT_THAT(complaint({"run", scene, "-o", out, "--set", "grains.density=-1.0"}, 2), HasSubstr("grains.density"));
     EXPECT_THAT(complaint({"run", scene, "-o", out, "--set", "grains.colour='red'"}, 2), HasSubstr("grains.colour"));
     EXPECT_THAT(complaint({"run", scene, "-o", out, "--set", "time.step=3e-3"}, 2), HasSubstr("output_interval"));
-    EXPECT_THAT(complaint({"run", scene, "-o", out, "--set", "probe.0.quantity='x'"}, 2), HasSubstr("probe[0].quantity"));
+    EXPECT_THAT(complaint({"run", scene, "-o", out, "--set", "probe.0.quantity='x'"}, 2),
+                HasSubstr("probe[0].quantity"));
     EXPECT_THAT(complaint({"run", scene, "-o", out, "--threads", "0"}, 2), HasSubstr("threads"));
     EXPECT_THAT(complaint({"run", scene, "-o", out, "--fast"}, 2), HasSubstr("--fast"));
     EXPECT_THAT(complaint({"run"}, 2), HasSubstr("scene"));
@@ -150,11 +153,11 @@ TEST_F(CommandLine, UnwritableOutputIsAnIoError) {
 
 TEST_F(CommandLine, DivergedRunNamesWhatHappened) {
     // 1 m/s and a step of 10 ms carry a grain of 1 mm through the floor
-    const std::string text = complaint(
-        {"run", path("scene.toml"), "-o", path("out"), "--quiet", "--set", "time.step=1e-2", "--set",
-         "grains.velocity=[0.0, 0.0, -1.0]", "--set",
-         "grains.contact={law='linear_spring', stiffness=1e3, restitution=0.5, friction=0.0}"},
-        3);
+    const std::string text =
+        complaint({"run", path("scene.toml"), "-o", path("out"), "--quiet", "--set", "time.step=1e-2", "--set",
+                   "grains.velocity=[0.0, 0.0, -1.0]", "--set",
+                   "grains.contact={law='linear_spring', stiffness=1e3, restitution=0.5, friction=0.0}"},
+                  3);
     for (const char* part : {"step 1", "grain 0", "contact limit", "last state in", "snapshots/diverged.h5"})
         EXPECT_THAT(text, HasSubstr(part));
     EXPECT_TRUE(fs::exists(path("out/snapshots/diverged.h5")));

@@ -68,8 +68,8 @@ Impact impact(const Law& law, double m, double inverse_radius, double v0, double
 /// A contact with random overlap, direction and velocity.
 Contact<double> random_contact(Random& random) {
     const Vec3 n = random_vector(random, -1.0, 1.0).normalized(), v = random_vector(random, -0.1, 0.1);
-    return {random.uniform(-1e-6, 1e-5), {n.x(), n.y(), n.z()}, {v.x(), v.y(), v.z()}, random.uniform(1e4, 1e6),
-            random.uniform(1e3, 1e4), 1e-7};
+    return {random.uniform(-1e-6, 1e-5), {n.x(), n.y(), n.z()},    {v.x(), v.y(), v.z()},
+            random.uniform(1e4, 1e6),    random.uniform(1e3, 1e4), 1e-7};
 }
 Space<double> random_stretch(Random& random) {
     const Vec3 s = random_vector(random, -1e-6, 1e-6);
@@ -77,8 +77,7 @@ Space<double> random_stretch(Random& random) {
 }
 double norm(const Space<double>& a) { return std::sqrt(dot(a, a)); }
 
-template <class Law, class T>
-typename Law::template Parameters<T> spread(const Law& law) {
+template <class Law, class T> typename Law::template Parameters<T> spread(const Law& law) {
     constexpr std::size_t n = sizeof(law.parameters) / sizeof(double);
     double one[n];
     std::memcpy(one, &law.parameters, sizeof one);
@@ -93,7 +92,8 @@ typename Law::template Parameters<T> spread(const Law& law) {
 /// of both forms, which leaves a few roundings.
 bool agree(const double* a, const double* b, std::size_t n) {
 #ifdef __FMA__
-    const double largest = std::abs(*std::max_element(a, a + n, [](double p, double q) { return std::abs(p) < std::abs(q); }));
+    const double largest =
+        std::abs(*std::max_element(a, a + n, [](double p, double q) { return std::abs(p) < std::abs(q); }));
     for (std::size_t q = 0; q < n; ++q)
         if (std::abs(a[q] - b[q]) > 1e-14 * largest) return false;
     return true;
@@ -103,8 +103,7 @@ bool agree(const double* a, const double* b, std::size_t n) {
 }
 
 /// Eight random contacts by the pack and by the scalar form.
-template <class Law>
-void expect_lanes_are_scalars(const Law& law) {
+template <class Law> void expect_lanes_are_scalars(const Law& law) {
     Random random(17);
     const auto parameters = spread<Law, Pack>(law);
     std::size_t different = 0;
@@ -196,7 +195,8 @@ TEST(ContactLaws, HertzContactTime) {
     // At rest: the contact of an overlap of 1e-3 R*, which the speed sqrt(4/5 k_h o^2.5 / m*) reaches.
     const double k_h = 4.0 / 3.0 * law.parameters.modulus / std::sqrt(2e3), o = 1e-3 / 2e3;
     const double slow = std::sqrt(0.8 * k_h * std::pow(o, 2.5) * 1e5);
-    EXPECT_NEAR(law.contact_time(1e5, 2e3, 0.0), law.contact_time(1e5, 2e3, slow), 1e-9 * law.contact_time(1e5, 2e3, slow));
+    EXPECT_NEAR(law.contact_time(1e5, 2e3, 0.0), law.contact_time(1e5, 2e3, slow),
+                1e-9 * law.contact_time(1e5, 2e3, slow));
     EXPECT_NEAR(law.contact_time(1e5, 2e3, 0.0), 2.9432 * o / slow, 1e-9 * o / slow);
     EXPECT_EQ(contact_time(ContactLaw(law), 1e5, 2e3, 1.0), law.contact_time(1e5, 2e3, 1.0));
 }
@@ -217,7 +217,8 @@ TEST(ContactLaws, HertzMindlinByHand) {
 // stiffness when it shrinks. Overlap 1 -> 4 doubles the stiffness.
 TEST(ContactLaws, MindlinForceStaysOnLoadingAndShrinksOnUnloading) {
     const auto law = law_of<HertzMindlin>(with("law = \"hertz_mindlin\"\nyoung = 1e8\npoisson = 0.25\nfriction = 9\n"
-                                               "rolling = \"none\"\n", "restitution", 1.0));
+                                               "rolling = \"none\"\n",
+                                               "restitution", 1.0));
     const double dt = 1e-6;
     const auto tangential = [&](double overlap, double before) {
         Space<double> stretch{0, 1e-8, 0};
@@ -281,8 +282,7 @@ TEST(ContactLaws, SlidingDoesNotWindUpTheSpring) {
     const auto law = law_of<LinearSpring>(frictional);
     Space<double> stretch{0, 0, 0};
     const double dt = 1e-6;
-    for (int k = 0; k < 10000; ++k)
-        LinearSpring::force(contact_at(1e-5, {0.0, 0.1, 0.0}, dt), law.parameters, stretch);
+    for (int k = 0; k < 10000; ++k) LinearSpring::force(contact_at(1e-5, {0.0, 0.1, 0.0}, dt), law.parameters, stretch);
     const double limit = 0.4 * 1e4 * 1e-5;
     EXPECT_NEAR(stretch.y, (limit - 0.02 * 0.1) / 3e3 + 0.5 * dt * 0.1, 1e-9 * limit);
     const double turn = 2.0 * limit / 3e3; // slip that takes the spring from +limit to -limit
@@ -344,8 +344,8 @@ TEST(ContactLaws, NoClosedCycleOfHertzMindlinGivesEnergy) {
                 std::array<double, 3> step{};
                 for (std::size_t c = 0; c < 3; ++c) step[c] = (corners[leg][c] - corners[leg - 1][c]) / steps;
                 const double overlap = corners[leg - 1][0] + k * step[0];
-                const auto now = HertzMindlin::force(contact_at(overlap, {-step[0] / dt, step[1] / dt, step[2] / dt}, dt),
-                                                     law.parameters, stretch);
+                const auto now = HertzMindlin::force(
+                    contact_at(overlap, {-step[0] / dt, step[1] / dt, step[2] / dt}, dt), law.parameters, stretch);
                 const double work = -0.5 * (now.normal + last.normal) * step[0] +
                                     0.5 * (now.tangential.y + last.tangential.y) * step[1] +
                                     0.5 * (now.tangential.z + last.tangential.z) * step[2];

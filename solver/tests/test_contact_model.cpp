@@ -40,10 +40,16 @@ TEST(ContactModel, EqualTablesAreOneLaw) {
 
 // A hidden mixing rule: unlike groups without a [[contact]] are an error that says what to write.
 TEST(ContactModel, UnlikeGroupsNeedAContact) {
-    expect_error([] { contact_model({"a", "b"}, own_of({spring(1e4), spring(2e4)}), 2, {}, "scene.toml"); },
-                 {"scene.toml", "contact", "\"a\"", "\"b\"", "between"});
-    expect_error([] { contact_model({"a", "b"}, own_of({spring(1e4), std::string(rolling_spring)}), 2, {}, "s.toml"); },
-                 {"s.toml", "contact"});
+    expect_error(
+        [] {
+            contact_model({"a", "b"}, own_of({spring(1e4), spring(2e4)}), 2, {}, "scene.toml");
+        },
+        {"scene.toml", "contact", "\"a\"", "\"b\"", "between"});
+    expect_error(
+        [] {
+            contact_model({"a", "b"}, own_of({spring(1e4), std::string(rolling_spring)}), 2, {}, "s.toml");
+        },
+        {"s.toml", "contact"});
 }
 
 // A pair that holds in one order only, or that replaces the groups' own laws.
@@ -75,24 +81,34 @@ TEST(ContactModel, AWallsOwnTableAndAContactOverIt) {
     EXPECT_EQ(stiffness(m, 0, 2), 5e4);
     EXPECT_EQ(stiffness(m, 2, 1), 5e4);
     EXPECT_EQ(stiffness(m, 0, 1), 1e4);
-    const ContactModel given = contact_model({"a", "b", "floor"}, own, 2, {{"floor", "b", contact_of(spring(9e4))}}, "s");
+    const ContactModel given =
+        contact_model({"a", "b", "floor"}, own, 2, {{"floor", "b", contact_of(spring(9e4))}}, "s");
     EXPECT_EQ(stiffness(given, 0, 2), 5e4);
     EXPECT_EQ(stiffness(given, 1, 2), 9e4);
 }
 
 // Two laws in one scene: the sweep over pairs knows one only.
 TEST(ContactModel, LawsOfTwoKindsCannotBeMixed) {
-    expect_error([] { contact_model({"a", "floor"}, own_of({spring(1e4), std::string(hertz)}), 1, {}, "scene.toml"); },
-                 {"scene.toml", "linear_spring", "hertz_mindlin"});
-    expect_error([] { contact_model({"a", "floor"}, own_of({spring(1e4), std::string(rolling_spring)}), 1, {}, "s.toml"); },
-                 {"s.toml", "none", "constant_torque"});
+    expect_error(
+        [] {
+            contact_model({"a", "floor"}, own_of({spring(1e4), std::string(hertz)}), 1, {}, "scene.toml");
+        },
+        {"scene.toml", "linear_spring", "hertz_mindlin"});
+    expect_error(
+        [] {
+            contact_model({"a", "floor"}, own_of({spring(1e4), std::string(rolling_spring)}), 1, {}, "s.toml");
+        },
+        {"s.toml", "none", "constant_torque"});
 }
 
 // Names that do not exist and pairs given twice (in either order) pass silently.
 TEST(ContactModel, PairsAreChecked) {
     const Own own = own_of({spring(1e4), spring(1e4)});
-    expect_error([&] { contact_model({"a", "b"}, own, 2, {{"a", "c", contact_of(spring(1))}}, "scene.toml"); },
-                 {"scene.toml", "contact.between", "\"c\""});
+    expect_error(
+        [&] {
+            contact_model({"a", "b"}, own, 2, {{"a", "c", contact_of(spring(1))}}, "scene.toml");
+        },
+        {"scene.toml", "contact.between", "\"c\""});
     expect_error(
         [&] {
             contact_model({"a", "b"}, own, 2, {{"a", "b", contact_of(spring(1))}, {"b", "a", contact_of(spring(2))}},
@@ -143,11 +159,13 @@ TEST(ContactModel, ParameterErrors) {
 // Friction zero makes the tangential keys and rolling optional; they may still be given.
 TEST(ContactModel, FrictionlessTablesMayBeShort) {
     EXPECT_NO_THROW(contact_of(spring(1e4)));
-    EXPECT_NO_THROW(contact_of(spring(1e4) + "tangential_stiffness = 1.0\ntangential_damping = 0.0\nrolling = \"none\""));
+    EXPECT_NO_THROW(
+        contact_of(spring(1e4) + "tangential_stiffness = 1.0\ntangential_damping = 0.0\nrolling = \"none\""));
 }
 
 // A hidden default: with friction, the scene must say whether rolling is resisted.
 TEST(ContactModel, FrictionRequiresTheRollingKey) {
-    expect_error([] { contact_of("law = \"linear_spring_coulomb\"\nstiffness = 1.0\nrestitution = 0.9\nfriction = 0.5"); },
-                 {"contact.rolling", "missing"});
+    expect_error(
+        [] { contact_of("law = \"linear_spring_coulomb\"\nstiffness = 1.0\nrestitution = 0.9\nfriction = 0.5"); },
+        {"contact.rolling", "missing"});
 }

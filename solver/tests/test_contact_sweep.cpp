@@ -19,7 +19,8 @@ constexpr std::array contacts{"linear_spring", "linear_spring_coulomb", "hertz_m
 constexpr std::array rollings{"none", "constant_torque", "elastic_plastic"};
 
 std::string text_of(const std::string& contact, const std::string& rolling, const Numbers& n) {
-    std::string text = fmt::format("law = \"{}\"\nrestitution = {}\nfriction = {}\n", contact, n.restitution, n.friction);
+    std::string text =
+        fmt::format("law = \"{}\"\nrestitution = {}\nfriction = {}\n", contact, n.restitution, n.friction);
     if (contact == "hertz_mindlin")
         text += fmt::format("young = {}\npoisson = {}\n", n.young, n.poisson);
     else
@@ -91,7 +92,8 @@ PairResult pair_result(const GrainSystem& s, std::size_t i, std::size_t j, const
     out.torque_j = (arm_j * n).cross(-ft);
     const Vec3 w = without(g.omega[i] - g.omega[j], n);
     const double yield = p.rolling_friction * r * std::max(0.0, fn);
-    const double inertia = 1.0 / (2.5 / (g.mass[i] * g.radius[i] * g.radius[i]) + 2.5 / (g.mass[j] * g.radius[j] * g.radius[j]));
+    const double inertia =
+        1.0 / (2.5 / (g.mass[i] * g.radius[i] * g.radius[i]) + 2.5 / (g.mass[j] * g.radius[j] * g.radius[j]));
     Vec3 couple = Vec3::Zero();
     if (rolling == "constant_torque") couple = -std::min(yield, w.norm() * inertia / dt) * w.normalized();
     if (rolling == "elastic_plastic") {
@@ -113,9 +115,10 @@ GrainSystem packed_box(const std::string& contact, const std::string& rolling, c
     GrainSystem s;
     s.domain = box(Vec3::Constant(7e-3), periodic);
     s.groups = {group_of("glass", 2500.0), group_of("steel", 7800.0)};
-    s.contact = contact_model({"glass", "steel"}, {contact_of(text_of(contact, rolling, numbers[0])),
-                                                   contact_of(text_of(contact, rolling, numbers[1]))},
-                              2, {{"glass", "steel", contact_of(text_of(contact, rolling, numbers[2]))}}, "scene.toml");
+    s.contact = contact_model(
+        {"glass", "steel"},
+        {contact_of(text_of(contact, rolling, numbers[0])), contact_of(text_of(contact, rolling, numbers[1]))}, 2,
+        {{"glass", "steel", contact_of(text_of(contact, rolling, numbers[2]))}}, "scene.toml");
     add_jittered_lattice(s, 7, polydisperse ? 4e-4 : 5e-4, polydisperse ? 6e-4 : 5e-4, 0.05, 0.05, 100.0, 4);
     start(s);
     return s;
@@ -139,7 +142,8 @@ void expect_plain_formulas(GrainSystem& s, const std::string& contact, const std
         const auto remembered = [&](int h) {
             return Vec3(list.remembered(p, h), list.remembered(p, h + 1), list.remembered(p, h + 2));
         };
-        const Numbers& n = numbers[s.grains.group[i] != s.grains.group[j] ? 2U : static_cast<std::size_t>(s.grains.group[i])];
+        const Numbers& n =
+            numbers[s.grains.group[i] != s.grains.group[j] ? 2U : static_cast<std::size_t>(s.grains.group[i])];
         want.push_back(pair_result(s, i, j, contact, rolling, n, spring ? remembered(0) : Vec3::Zero(),
                                    bends ? remembered(list.history - 3) : Vec3::Zero(), dt));
         force[i] += want.back().force;
@@ -232,9 +236,12 @@ TEST(ContactSweep, OneAndTwoThreadsGiveTheSameBits) {
         set_threads(2);
         evaluate_pairs(two.neighbours, two.contact, two.domain, 1e-6);
         set_threads(before);
-        EXPECT_EQ(std::memcmp(one.neighbours.force.data(), two.neighbours.force.data(), one.neighbours.count * sizeof(PairForce)), 0);
+        EXPECT_EQ(std::memcmp(one.neighbours.force.data(), two.neighbours.force.data(),
+                              one.neighbours.count * sizeof(PairForce)),
+                  0);
         EXPECT_EQ(std::memcmp(one.neighbours.stretch.data(), two.neighbours.stretch.data(),
-                              one.neighbours.stretch.size() / 8 * 7 * sizeof(double)), 0);
+                              one.neighbours.stretch.size() / 8 * 7 * sizeof(double)),
+                  0);
     }
 }
 

@@ -9,7 +9,8 @@ using namespace plumb::fixture;
 // Images along an open axis, or a wrong side: against the best of all 27 images.
 TEST(Domain, MinimumImageIsTheNearestOfAllImages) {
     Random random(1);
-    for (const auto periodic : {std::array{true, true, true}, std::array{true, false, true}, std::array{false, false, false}}) {
+    for (const auto periodic :
+         {std::array{true, true, true}, std::array{true, false, true}, std::array{false, false, false}}) {
         const Domain domain = box(Vec3(1.0, 2.0, 0.5), periodic);
         for (int repeat = 0; repeat < 2000; ++repeat) {
             const Vec3 dx = random_vector(random, -1.0, 1.0).cwiseProduct(domain.size);

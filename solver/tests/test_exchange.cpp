@@ -23,16 +23,14 @@ long double exact_phi(int n, long double z) {
     return n == 0 ? phi0 : n == 1 ? phi1 : (1.0L - phi1) / z;
 }
 
-template <class F>
-void for_each_exchange(F&& f) {
+template <class F> void for_each_exchange(F&& f) {
     f(ExponentialExchange{});
     f(ImplicitExchange{});
     f(ExplicitExchange{});
 }
 
 /// Velocity of a grain under dv/dt = g - c |v| v from v0 after time t in steps of dt.
-template <class E>
-double newton_velocity(const E& exchange, double g, double c, double v0, double t, double dt) {
+template <class E> double newton_velocity(const E& exchange, double g, double c, double v0, double t, double dt) {
     Vec3 v(v0, 0.0, 0.0);
     const auto rate = [&](double slip) { return c * slip; };
     for (long long k = std::llround(t / dt); k > 0; --k) {
@@ -89,7 +87,8 @@ TEST(Exchange, TheTerminalStateIsAFixedPoint) {
             const double beta = 40.0, dt = z / beta, u = 0.7, g = -9.81, v = u + g / beta;
             const StepWeights w = exchange(z);
             EXPECT_NEAR(w.phi0 * v + w.phi1 * dt * g + (1.0 - w.phi0) * u, v, 1e-13 * (1.0 + z * z * 1e-2)) << z;
-            EXPECT_NEAR(w.phi1 * dt * v + w.phi2 * dt * dt * (g + beta * u), dt * v, 1e-13 * dt * (1.0 + z * z * 1e-2)) << z;
+            EXPECT_NEAR(w.phi1 * dt * v + w.phi2 * dt * dt * (g + beta * u), dt * v, 1e-13 * dt * (1.0 + z * z * 1e-2))
+                << z;
         }
     });
 }
@@ -143,7 +142,9 @@ TEST(Exchange, MidStepRateFromRestWithNewtonDrag) {
         EXPECT_GT(beta, 0.0) << dt;
         EXPECT_NEAR(rate((0.5 * dt * half.phi1 * g).norm()), beta, 1e-10) << dt;
     }
-    EXPECT_EQ(mid_step_rate(ExponentialExchange{}, [](double) { return 0.0; }, Vec3(1, 0, 0), Vec3(0, 0, 1), 1.0), 0.0);
+    EXPECT_EQ(mid_step_rate(
+                  ExponentialExchange{}, [](double) { return 0.0; }, Vec3(1, 0, 0), Vec3(0, 0, 1), 1.0),
+              0.0);
 }
 
 // Second order for nonlinear drag (a rate taken at the start of the step costs one): v = v_t tanh(g t/v_t + c0).
@@ -153,7 +154,8 @@ TEST(Exchange, SecondOrderForNonlinearDrag) {
     for_each_exchange([&](const auto& exchange) {
         const double coarse = newton_velocity(exchange, g, c, v0, t, t / 20) - exact;
         const double fine = newton_velocity(exchange, g, c, v0, t, t / 80) - exact;
-        EXPECT_NEAR(order_of(std::abs(coarse), std::abs(fine), 4.0), 2.0, 0.2) << std::decay_t<decltype(exchange)>::name;
+        EXPECT_NEAR(order_of(std::abs(coarse), std::abs(fine), 4.0), 2.0, 0.2)
+            << std::decay_t<decltype(exchange)>::name;
     });
     EXPECT_NEAR(newton_velocity(ExponentialExchange{}, g, c, v0, 1e4, 1e3), vt, 1e-12);
 }

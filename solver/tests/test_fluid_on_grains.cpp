@@ -17,7 +17,8 @@ constexpr double density = 1000.0, viscosity = 1e-3, radius = 5e-5, d = 2.0 * ra
 constexpr double drag = 3.0 * pi * viscosity * d; // Stokes [kg/s]
 
 FluidOnGrains fluid_of(std::string_view coupling, std::string_view flow = "\"rest\"") {
-    Table f = table_of(fmt::format("method = \"prescribed\"\ndensity = 1000.0\nviscosity = 1e-3\nflow = {}", flow), "fluid");
+    Table f =
+        table_of(fmt::format("method = \"prescribed\"\ndensity = 1000.0\nviscosity = 1e-3\nflow = {}", flow), "fluid");
     Table c = table_of(fmt::format("direction = \"one_way\"\n{}", coupling), "coupling");
     FluidOnGrains made = read_fluid_on_grains(f, c);
     f.finish();
@@ -40,7 +41,8 @@ void advance_with(FluidOnGrains& fluid, GrainSystem& s, int steps, double dt) {
 }
 
 GrainSystem one_grain(const Vec3& gravity, const Vec3& v = Vec3::Zero(), Motion motion = Motion::free) {
-    GrainSystem s = system_of(box(Vec3::Constant(1.0), {}, gravity), "law = \"none\"", {group_of("glass", 2500.0, true, motion)});
+    GrainSystem s =
+        system_of(box(Vec3::Constant(1.0), {}, gravity), "law = \"none\"", {group_of("glass", 2500.0, true, motion)});
     add(s, radius, Vec3(0.5, 0.5, 0.5), v);
     return s;
 }
@@ -55,10 +57,12 @@ double by_quadrature(double m, double w, double k, double v0, double t, int step
     for (int n = 1; n <= steps; ++n) {
         double past = 0.0;
         for (std::size_t q = 0; q < dv.size(); ++q)
-            past += dv[q] / dt * 2.0 * (std::sqrt(dt * (n - static_cast<double>(q))) - std::sqrt(dt * (n - 1.0 - static_cast<double>(q))));
+            past += dv[q] / dt * 2.0 *
+                    (std::sqrt(dt * (n - static_cast<double>(q))) - std::sqrt(dt * (n - 1.0 - static_cast<double>(q))));
         const double own = 2.0 / std::sqrt(dt); // of this step's dv
         const double jump = 2.0 * k * v0 * (std::sqrt(dt * n) - std::sqrt(dt * (n - 1.0)));
-        const double change = (dt * (w - drag * v) - jump - 0.5 * dt * k * (before + past)) / (m + 0.5 * dt * (drag + k * own));
+        const double change =
+            (dt * (w - drag * v) - jump - 0.5 * dt * k * (before + past)) / (m + 0.5 * dt * (drag + k * own));
         before = past + own * change;
         dv.push_back(change);
         v += change;
@@ -100,7 +104,8 @@ TEST(FluidOnGrains, AddedMassSlowsTheRelaxation) {
 // A neutrally dense grain in resting fluid stays; twice as dense as the fluid it falls with half of gravity at first.
 TEST(FluidOnGrains, Buoyancy) {
     for (const double ratio : {1.0, 2.0}) {
-        GrainSystem s = system_of(box(Vec3::Constant(1.0), {}, Vec3(0, 0, -9.81)), "law = \"none\"", {group_of("g", ratio * density)});
+        GrainSystem s = system_of(box(Vec3::Constant(1.0), {}, Vec3(0, 0, -9.81)), "law = \"none\"",
+                                  {group_of("g", ratio * density)});
         add(s, radius, Vec3(0.5, 0.5, 0.5));
         FluidOnGrains fluid = fluid_of("drag = \"none\"\nforces = [\"buoyancy\"]\nexchange = \"exponential\"\n");
         advance_with(fluid, s, 10, 1e-4);
@@ -112,11 +117,13 @@ TEST(FluidOnGrains, Buoyancy) {
 TEST(FluidOnGrains, BlocksShareDragAndInertia) {
     const Vec3 g(0.0, 0.0, -9.81);
     for (const std::string_view forces : {"[]", "[\"virtual_mass\"]"}) {
-        GrainSystem s = system_of(box(Vec3::Constant(1.0), {}, g), "law = \"none\"", {group_of("b", 2500.0, true, Motion::block)});
+        GrainSystem s =
+            system_of(box(Vec3::Constant(1.0), {}, g), "law = \"none\"", {group_of("b", 2500.0, true, Motion::block)});
         add(s, radius, Vec3(0.5, 0.5, 0.5));
         add(s, 2.0 * radius, Vec3(0.501, 0.5, 0.5));
         FluidOnGrains fluid = fluid_of(stokes(forces));
-        const double mass = 9.0 * 2500.0 * sphere_volume(d), inertia = mass + (forces == "[]" ? 0.0 : 4.5 * density * sphere_volume(d));
+        const double mass = 9.0 * 2500.0 * sphere_volume(d),
+                     inertia = mass + (forces == "[]" ? 0.0 : 4.5 * density * sphere_volume(d));
         const double tau = inertia / (3.0 * drag), terminal = -9.81 * mass / (3.0 * drag);
         advance_with(fluid, s, 5, 0.4 * tau);
         for (std::size_t k = 0; k < 2; ++k)
@@ -127,7 +134,8 @@ TEST(FluidOnGrains, BlocksShareDragAndInertia) {
 // A fixed grain feels the fluid, and stays where it is.
 TEST(FluidOnGrains, FixedGrainsFeelTheDrag) {
     GrainSystem s = one_grain(Vec3(0, 0, -9.81), Vec3(0.01, 0.0, 0.0), Motion::fixed);
-    FluidOnGrains fluid = fluid_of(stokes("[\"buoyancy\", \"virtual_mass\"]"), "{law = \"uniform\", velocity = [0.1, 0.0, 0.0]}");
+    FluidOnGrains fluid =
+        fluid_of(stokes("[\"buoyancy\", \"virtual_mass\"]"), "{law = \"uniform\", velocity = [0.1, 0.0, 0.0]}");
     advance_with(fluid, s, 3, 1e-3);
     EXPECT_EQ(s.grains.v[0], Vec3(0.01, 0.0, 0.0));
     EXPECT_LT((fluid.last_drag[0] - Vec3(0.09 * drag, 0.0, 0.0)).norm(), 1e-12 * drag);
@@ -139,9 +147,11 @@ TEST(FluidOnGrains, FixedGrainsFeelTheDrag) {
 // mass, nonlinear drag and history, for grains that touch (contacts act with the weight phi2 of their change).
 TEST(FluidOnGrains, TheReportedForceClosesTheMomentumBalance) {
     const std::string forces = "[\"buoyancy\", \"pressure_gradient\", \"virtual_mass\", \"basset\", \"saffman_mei\"]";
-    FluidOnGrains fluid = fluid_of("drag = \"schiller_naumann\"\nexchange = \"exponential\"\nbasset = {law = \"exponentials\", "
-                                   "count = 12, window = 0.1}\nforces = " + forces,
-                                   "{law = \"oscillating\", amplitude = [0.3, 0.1, 0.2], frequency = 200.0}");
+    FluidOnGrains fluid =
+        fluid_of("drag = \"schiller_naumann\"\nexchange = \"exponential\"\nbasset = {law = \"exponentials\", "
+                 "count = 12, window = 0.1}\nforces = " +
+                     forces,
+                 "{law = \"oscillating\", amplitude = [0.3, 0.1, 0.2], frequency = 200.0}");
     GrainSystem s = system_of(box(Vec3::Constant(2e-3), {true, true, true}, Vec3(0, 0, -9.81)),
                               "law = \"linear_spring\"\nstiffness = 10.0\nrestitution = 0.7\nfriction = 0.0\n");
     add(s, radius, Vec3(1e-3, 1e-3, 1e-3), Vec3(0.02, 0.0, 0.0));
@@ -152,7 +162,8 @@ TEST(FluidOnGrains, TheReportedForceClosesTheMomentumBalance) {
     for (int k = 0; k < 4; ++k) {
         std::vector<Vec3> v(2), contact(2);
         for (std::int32_t id = 0; id < 2; ++id) v[static_cast<std::size_t>(id)] = s.grains.v[place(s.grains, id)];
-        for (std::int32_t id = 0; id < 2; ++id) contact[static_cast<std::size_t>(id)] = contact_forces(s)[place(s.grains, id)];
+        for (std::int32_t id = 0; id < 2; ++id)
+            contact[static_cast<std::size_t>(id)] = contact_forces(s)[place(s.grains, id)];
         EXPECT_GT(contact[0].norm(), 0.0);
         advance_with(fluid, s, 1, dt);
         for (std::int32_t id = 0; id < 2; ++id) {
@@ -174,7 +185,9 @@ TEST(FluidOnGrains, BassetAgreesWithDirectQuadrature) {
     const double exact = by_quadrature(m, w, k, 0.0, t, 3000);
     const auto v_after = [&](int steps) {
         GrainSystem s = one_grain(g);
-        FluidOnGrains fluid = fluid_of(stokes("[\"basset\"]") + fmt::format("basset = {{law = \"exponentials\", count = 30, window = {}}}", 2.0 * t));
+        FluidOnGrains fluid =
+            fluid_of(stokes("[\"basset\"]") +
+                     fmt::format("basset = {{law = \"exponentials\", count = 30, window = {}}}", 2.0 * t));
         advance_with(fluid, s, steps, t / steps);
         return s.grains.v[0].z();
     };
@@ -191,7 +204,9 @@ TEST(FluidOnGrains, BassetOfASuddenStart) {
     const double exact = by_quadrature(m, 0.0, k, v0, t, 3000);
     const auto error = [&](int steps) {
         GrainSystem s = one_grain(Vec3::Zero(), Vec3(v0, 0.0, 0.0));
-        FluidOnGrains fluid = fluid_of(stokes("[\"basset\"]") + fmt::format("basset = {{law = \"exponentials\", count = 30, window = {}}}", 2.0 * t));
+        FluidOnGrains fluid =
+            fluid_of(stokes("[\"basset\"]") +
+                     fmt::format("basset = {{law = \"exponentials\", count = 30, window = {}}}", 2.0 * t));
         advance_with(fluid, s, steps, t / steps);
         return std::abs(s.grains.v[0].x() / exact - 1.0);
     };
@@ -202,7 +217,8 @@ TEST(FluidOnGrains, BassetOfASuddenStart) {
 // Grains that enter a fluid in which others move already: forcing and history must grow with them, and the others must
 // not notice (independent grains).
 TEST(FluidOnGrains, GrainsAddedLater) {
-    const std::string coupling = stokes("[\"virtual_mass\", \"basset\"]") + "basset = {law = \"exponentials\", count = 12, window = 1.0}";
+    const std::string coupling =
+        stokes("[\"virtual_mass\", \"basset\"]") + "basset = {law = \"exponentials\", count = 12, window = 1.0}";
     const auto run = [&](bool injects) {
         GrainSystem s = system_of(box(Vec3::Constant(0.01), {true, true, true}, Vec3(0, 0, -9.81)),
                                   "law = \"linear_spring\"\nstiffness = 10.0\nrestitution = 0.9\nfriction = 0.0\n");
@@ -225,11 +241,13 @@ TEST(FluidOnGrains, BadTables) {
     expect_error([] { fluid_of(stokes("[\"lift\"]")); }, {"coupling.forces", "lift", "buoyancy", "virtual_mass"});
     expect_error([] { fluid_of(stokes("[\"buoyancy\", \"buoyancy\"]")); }, {"coupling.forces", "buoyancy"});
     expect_error([] { fluid_of(stokes("[\"basset\"]")); }, {"coupling.basset", "missing"});
-    expect_error([] { fluid_of(stokes() + "basset = {law = \"exponentials\", count = 12, window = 1.0}"); }, {"coupling.basset", "unknown"});
+    expect_error([] { fluid_of(stokes() + "basset = {law = \"exponentials\", count = 12, window = 1.0}"); },
+                 {"coupling.basset", "unknown"});
     expect_error([] { fluid_of("drag = \"stokes\"\nexchange = \"exponential\""); }, {"coupling.forces", "missing"});
     expect_error([] { fluid_of("drag = \"stokes\"\nforces = []"); }, {"coupling.exchange", "missing"});
     expect_error([] { fluid_of("forces = []\nexchange = \"implicit\""); }, {"coupling.drag", "missing"});
-    expect_error([] { fluid_of(stokes() + "porosity = {law = \"uniform\", value = 0.0}"); }, {"coupling.porosity.value", "(0, 1]"});
+    expect_error([] { fluid_of(stokes() + "porosity = {law = \"uniform\", value = 0.0}"); },
+                 {"coupling.porosity.value", "(0, 1]"});
     expect_error([] { fluid_of(stokes(), "\"vortex\""); }, {"fluid.flow", "vortex", "rest"});
 }
 // "basset" is a force like the others and belongs to the list of known ones.

@@ -92,8 +92,7 @@ GrainSystem cloud(const Domain& domain, int count, double least, double largest,
     Random random(seed);
     for (int k = 0; k < count; ++k) {
         Vec3 x;
-        for (Eigen::Index c = 0; c < 3; ++c)
-            x[c] = random.uniform(-outside, 1.0 + outside) * domain.size[c];
+        for (Eigen::Index c = 0; c < 3; ++c) x[c] = random.uniform(-outside, 1.0 + outside) * domain.size[c];
         add(system, random.uniform(least, largest), x);
     }
     return system;
@@ -111,9 +110,11 @@ void expect_all_pairs(GrainSystem& s) {
 // and more cells along each axis, sizes 1:5.
 TEST(Neighbours, AllPairsOfPolydisperseGrains) {
     for (int sides = 0; sides < 8; ++sides)
-        for (const Vec3& size : {Vec3(1.0, 1.0, 1.0), Vec3(0.45, 0.7, 1.3), Vec3(0.7, 0.45, 0.45), Vec3(0.67, 0.9, 2.0)}) {
+        for (const Vec3& size :
+             {Vec3(1.0, 1.0, 1.0), Vec3(0.45, 0.7, 1.3), Vec3(0.7, 0.45, 0.45), Vec3(0.67, 0.9, 2.0)}) {
             SCOPED_TRACE(fmt::format("sides {} size {} {} {}", sides, size.x(), size.y(), size.z()));
-            GrainSystem s = cloud(box(size, {(sides & 1) != 0, (sides & 2) != 0, (sides & 4) != 0}), 300, 0.02, 0.1, sides);
+            GrainSystem s =
+                cloud(box(size, {(sides & 1) != 0, (sides & 2) != 0, (sides & 4) != 0}), 300, 0.02, 0.1, sides);
             expect_all_pairs(s);
         }
 }
@@ -136,8 +137,8 @@ TEST(Neighbours, NarrowBoxes) {
 TEST(Neighbours, GrainsOutsideTheBox) {
     for (int sides = 0; sides < 8; ++sides) {
         SCOPED_TRACE(sides);
-        GrainSystem s = cloud(box(Vec3(0.6, 0.8, 0.7), {(sides & 1) != 0, (sides & 2) != 0, (sides & 4) != 0}), 400, 0.02,
-                              0.1, sides, 2.0);
+        GrainSystem s = cloud(box(Vec3(0.6, 0.8, 0.7), {(sides & 1) != 0, (sides & 2) != 0, (sides & 4) != 0}), 400,
+                              0.02, 0.1, sides, 2.0);
         const std::vector<Vec3> before = s.grains.x;
         expect_all_pairs(s);
         for (std::size_t k = 0; k < s.grains.size(); ++k) {
@@ -248,7 +249,8 @@ TEST(Neighbours, MemorySurvivesARebuild) {
             const std::int32_t b = s.grains.id[static_cast<std::size_t>(s.neighbours.j[p])];
             const auto found = want.find(sorted(a, b));
             for (int h = 0; h < history; ++h) {
-                const double value = found == want.end() ? 0.0 : (a < b ? 1.0 : -1.0) * found->second[static_cast<std::size_t>(h)];
+                const double value =
+                    found == want.end() ? 0.0 : (a < b ? 1.0 : -1.0) * found->second[static_cast<std::size_t>(h)];
                 ASSERT_EQ(s.neighbours.remembered(p, h), value);
             }
             if (found != want.end()) ++kept, flipped += before[sorted(a, b)] != (a < b) ? 1U : 0U;

@@ -40,7 +40,8 @@ TEST(Parallel, ChunksDoNotDependOnThreads) {
     for (int threads = 1; threads <= 4; ++threads) {
         set_threads(threads);
         std::vector<std::size_t> end_of(10, 0);
-        parallel_chunks(95, [&](std::size_t begin, std::size_t end) { end_of[begin / 10] = end; }, 10);
+        parallel_chunks(
+            95, [&](std::size_t begin, std::size_t end) { end_of[begin / 10] = end; }, 10);
         for (std::size_t c = 0; c < 10; ++c) EXPECT_EQ(end_of[c], std::min<std::size_t>(95, 10 * c + 10));
     }
 }

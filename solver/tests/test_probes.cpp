@@ -23,11 +23,13 @@ const double infinity = std::numeric_limits<double>::infinity();
 std::string scene_text(const std::string& extra, const std::string& periodic = "[false, false, false]") {
     return "[domain]\nsize = [20.0, 20.0, 20.0]\nperiodic = " + periodic +
            "\ngravity = [0.0, 0.0, -10.0]\n"
-           "[[grains]]\nname = \"small\"\ndensity = 0.238732414637843\ndiameter = 2.0\nrotation = true\nmotion = \"free\"\n"
+           "[[grains]]\nname = \"small\"\ndensity = 0.238732414637843\ndiameter = 2.0\nrotation = true\nmotion = "
+           "\"free\"\n"
            "arrange = {law = \"single\", position = [5.0, 5.0, 5.0]}\nvelocity = [1.0, 2.0, 3.0]\n"
            "angular_velocity = [0.0, 0.0, 5.0]\ncontact = {law = \"linear_spring\", stiffness = 100.0, damping = 0.0, "
            "friction = 0.0}\n"
-           "[[grains]]\nname = \"large\"\ndensity = 0.238732414637843\ndiameter = 4.0\nrotation = true\nmotion = \"free\"\n"
+           "[[grains]]\nname = \"large\"\ndensity = 0.238732414637843\ndiameter = 4.0\nrotation = true\nmotion = "
+           "\"free\"\n"
            "arrange = {law = \"single\", position = [8.5, 5.0, 5.0]}\nvelocity = [-1.0, 0.0, 0.0]\n"
            "angular_velocity = [0.0, 0.0, 0.0]\ncontact = {law = \"linear_spring\", stiffness = 100.0, damping = 0.0, "
            "friction = 0.0}\n"
@@ -136,7 +138,8 @@ TEST(Probes, BadTablesAreInputErrors) {
     EXPECT_THAT(complaint("name = \"a/b\"\n" + count), HasSubstr("must be made of"));
     EXPECT_THAT(complaint("name = \"..\"\n" + count), HasSubstr("must be made of"));
     EXPECT_THAT(complaint("name = \"a\"\n" + count + "[[probe]]\nname = \"a\"\n" + count), HasSubstr("another probe"));
-    EXPECT_THAT(complaint("name = \"a\"\nquantity = \"speed\""), HasSubstr("\"speed\" is not one of \"grain_position\""));
+    EXPECT_THAT(complaint("name = \"a\"\nquantity = \"speed\""),
+                HasSubstr("\"speed\" is not one of \"grain_position\""));
     EXPECT_THAT(complaint("name = \"a\"\ninterval = 1.5e-4\n" + count), HasSubstr("a whole number is needed"));
     EXPECT_THAT(complaint("name = \"a\"\ninterval = 1e-6\n" + count), HasSubstr("a whole number is needed"));
     EXPECT_THAT(complaint("name = \"a\"\nintervall = 1e-4\n" + count), HasSubstr("intervall: unknown key"));
@@ -148,11 +151,14 @@ TEST(Probes, BadTablesAreInputErrors) {
     EXPECT_THAT(complaint(position + "grain = 0\naxis = \"w\""), HasSubstr("\"w\" is not one of"));
     EXPECT_THAT(complaint("name = \"a\"\nquantity = \"wall_force\"\nwall = \"lid\"\naxis = \"x\""),
                 HasSubstr("no [[wall]] named \"lid\""));
-    EXPECT_THAT(complaint("name = \"a\"\nquantity = \"grain_fluid_force\"\naxis = \"x\""), HasSubstr("needs a [fluid]"));
-    EXPECT_THAT(complaint("name = \"a\"\nquantity = \"packing_fraction\"\nlower = [0.0,0.0,0.0]\nupper = [0.0,1.0,1.0]"),
-                HasSubstr("must exceed lower"));
-    EXPECT_THAT(complaint("name = \"a\"\nquantity = \"packing_fraction\"\nlower = [0.0,0.0,0.0]\nupper = [21.0,1.0,1.0]"),
-                HasSubstr("must lie in the domain"));
+    EXPECT_THAT(complaint("name = \"a\"\nquantity = \"grain_fluid_force\"\naxis = \"x\""),
+                HasSubstr("needs a [fluid]"));
+    EXPECT_THAT(
+        complaint("name = \"a\"\nquantity = \"packing_fraction\"\nlower = [0.0,0.0,0.0]\nupper = [0.0,1.0,1.0]"),
+        HasSubstr("must exceed lower"));
+    EXPECT_THAT(
+        complaint("name = \"a\"\nquantity = \"packing_fraction\"\nlower = [0.0,0.0,0.0]\nupper = [21.0,1.0,1.0]"),
+        HasSubstr("must lie in the domain"));
     EXPECT_THAT(complaint("name = \"a\"\nquantity = \"grain_angular_momentum\"\naxis = \"z\"", "[true, false, false]"),
                 HasSubstr("periodic along x"));
 }
@@ -209,7 +215,7 @@ TEST(SphereOverlap, KnownVolumes) {
     EXPECT_NEAR(sphere_box_overlap(2.0, -far, far), v, 1e-13);
     EXPECT_NEAR(sphere_box_overlap(2.0, Vec3::Zero(), far), v / 8, 1e-6 * v);
     EXPECT_NEAR(sphere_box_overlap(2.0, Vec3(0, 0, -5), Vec3(5, 5, 5)), v / 4, 1e-6 * v);
-    EXPECT_NEAR(sphere_box_overlap(2.0, Vec3(-5, -5, 1), far), pi * 1.0 * 5.0 / 3.0, 1e-13); // cap of height 1
+    EXPECT_NEAR(sphere_box_overlap(2.0, Vec3(-5, -5, 1), far), pi * 1.0 * 5.0 / 3.0, 1e-13);    // cap of height 1
     EXPECT_NEAR(sphere_box_overlap(2.0, Vec3::Constant(-1), Vec3::Constant(1)), 8.0, 1e-6 * v); // inside it
     EXPECT_EQ(sphere_box_overlap(2.0, Vec3(2, -5, -5), far), 0.0);
     EXPECT_EQ(sphere_box_overlap(2.0, Vec3(1.5, 1.5, 1.5), far), 0.0); // the corner is 2.6 away
@@ -219,11 +225,13 @@ TEST(SphereOverlap, PartsAddUpToTheWhole) {
     Random random(5);
     for (int trial = 0; trial < 50; ++trial) {
         const double radius = random.uniform(0.5, 2.0), v = 4.0 / 3.0 * pi * radius * radius * radius;
-        const Vec3 cut(random.uniform(-radius, radius), random.uniform(-radius, radius), random.uniform(-radius, radius));
+        const Vec3 cut(random.uniform(-radius, radius), random.uniform(-radius, radius),
+                       random.uniform(-radius, radius));
         double sum = 0.0;
         for (int octant = 0; octant < 8; ++octant) {
             Vec3 lower = cut, upper = cut;
-            for (int c = 0; c < 3; ++c) ((octant >> c & 1) ? upper : lower)[c] = (octant >> c & 1) ? infinity : -infinity;
+            for (int c = 0; c < 3; ++c)
+                ((octant >> c & 1) ? upper : lower)[c] = (octant >> c & 1) ? infinity : -infinity;
             sum += sphere_box_overlap(radius, lower, upper);
         }
         EXPECT_NEAR(sum / v, 1.0, 4e-6);

@@ -24,7 +24,7 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 class ResultFiles : public testing::Test {
-  protected:
+protected:
     ResultFiles() : folder_((fs::path(testing::TempDir()) / ("plumb_files_" + std::to_string(::getpid()))).string()) {
         fs::create_directories(folder_);
     }
@@ -40,7 +40,7 @@ class ResultFiles : public testing::Test {
 
 /// Limits the size of files this process may write, as a full disk would, until it is destroyed.
 class FileSizeLimit {
-  public:
+public:
     explicit FileSizeLimit(rlim_t bytes) {
         before_signal_ = std::signal(SIGXFSZ, SIG_IGN);
         getrlimit(RLIMIT_FSIZE, &before_);
@@ -54,13 +54,12 @@ class FileSizeLimit {
     FileSizeLimit(const FileSizeLimit&) = delete;
     FileSizeLimit& operator=(const FileSizeLimit&) = delete;
 
-  private:
+private:
     rlimit before_{};
     void (*before_signal_)(int);
 };
 
-template <class Action>
-std::string io_complaint(Action&& action) {
+template <class Action> std::string io_complaint(Action&& action) {
     try {
         action();
     } catch (const IoError& e) {
@@ -71,8 +70,8 @@ std::string io_complaint(Action&& action) {
 }
 
 TEST_F(ResultFiles, Hdf5RoundTripKeepsBits) {
-    const std::vector<double> numbers{0.1, -0.0, 5e-324, std::numeric_limits<double>::max(),
-                                      std::numeric_limits<double>::infinity(), std::nan("")};
+    const std::vector<double> numbers{
+        0.1, -0.0, 5e-324, std::numeric_limits<double>::max(), std::numeric_limits<double>::infinity(), std::nan("")};
     for (const bool checked : {false, true}) {
         Hdf5Writer file(path("a.h5"), checked);
         file.write("group/table", numbers, {2, 3});
@@ -171,9 +170,9 @@ TEST_F(ResultFiles, FolderThatIsNoneIsAnIoError) {
 TEST_F(ResultFiles, OldResultIsRemovedAndNothingElse) {
     const std::string out = path("out");
     fs::create_directories(out + "/snapshots");
-    for (const char* name : {"run.json", "series.h5", "checkpoint.h5", "result.xdmf", "series.h5.tmp", "notes.txt",
-                             "snapshots/000003.h5", "snapshots/diverged.h5", "snapshots/000004.h5.tmp",
-                             "snapshots/mine.h5"})
+    for (const char* name :
+         {"run.json", "series.h5", "checkpoint.h5", "result.xdmf", "series.h5.tmp", "notes.txt", "snapshots/000003.h5",
+          "snapshots/diverged.h5", "snapshots/000004.h5.tmp", "snapshots/mine.h5"})
         std::ofstream(out + "/" + name) << "x";
     const ResultFolder folder = ResultFolder::fresh(out);
     std::vector<std::string> left;

@@ -131,7 +131,8 @@ TEST(RollingLaws, LanesAgreeWithTheScalarLaw) {
         for (int k = 0; k < 8; ++k) {
             one[k] = rolling({random.normal(), random.normal(), 0.0}, 1e-6);
             own[k] = {2e-3 * random.normal(), 2e-3 * random.normal(), 0.0};
-            packed.rotation.x[k] = one[k].rotation.x, packed.rotation.y[k] = one[k].rotation.y, packed.rotation.z[k] = 0;
+            packed.rotation.x[k] = one[k].rotation.x, packed.rotation.y[k] = one[k].rotation.y,
+            packed.rotation.z[k] = 0;
             bend.x[k] = own[k].x, bend.y[k] = own[k].y, bend.z[k] = 0;
         }
         const auto m = ElasticPlastic::torque(packed, {p(0.1), p(stiffness), p(0.3)}, bend);
@@ -157,8 +158,9 @@ TEST(RollingLaws, ParameterErrors) {
                  {"rolling.stiffness", "unknown"});
     expect_error([&] { made("rolling = {law = \"elastic_plastic\", friction = 0.1, stiffness = 0.0, damping = 0.0}"); },
                  {"rolling.stiffness", "0"});
-    expect_error([&] { made("rolling = {law = \"elastic_plastic\", friction = 0.1, stiffness = 1.0, damping = -1.0}"); },
-                 {"rolling.damping", "-1"});
+    expect_error(
+        [&] { made("rolling = {law = \"elastic_plastic\", friction = 0.1, stiffness = 1.0, damping = -1.0}"); },
+        {"rolling.damping", "-1"});
     expect_error([&] { made("rolling = \"sticky\""); }, {"sticky", "constant_torque", "elastic_plastic"});
     EXPECT_NO_THROW(made("rolling = \"none\""));
 }

@@ -36,7 +36,8 @@ constexpr std::string_view hertz =
 
 // The automatic step must divide the output interval and be no longer than the least limit, and no shorter than needed.
 TEST(StableStep, AutomaticStepDividesTheInterval) {
-    const Timing t = timing_of("end = 3.0\noutput_interval = 1.0\nstep = \"auto\"", {limit("drag", 0.7), limit("contact", 0.3)});
+    const Timing t =
+        timing_of("end = 3.0\noutput_interval = 1.0\nstep = \"auto\"", {limit("drag", 0.7), limit("contact", 0.3)});
     EXPECT_EQ(t.steps_per_output, 4);
     EXPECT_EQ(t.dt, 0.25);
     EXPECT_EQ(t.outputs, 3);
@@ -74,27 +75,38 @@ TEST(StableStep, TheOutputIntervalRulesWhenNothingElseDoes) {
 
 // Safety factors multiply their own limit and can change which one rules.
 TEST(StableStep, SafetyFactors) {
-    const std::string_view text = "end = 1.0\noutput_interval = 1.0\nstep = \"auto\"\nsafety = {contact = 2.0, drag = 0.5}";
+    const std::string_view text =
+        "end = 1.0\noutput_interval = 1.0\nstep = \"auto\"\nsafety = {contact = 2.0, drag = 0.5}";
     const Timing t = timing_of(text, {limit("contact", 0.2), limit("drag", 0.5)});
     EXPECT_EQ(t.ruling, "drag");
     EXPECT_EQ(t.steps_per_output, 4);
     EXPECT_EQ(t.limits[0].seconds, 0.4);
     EXPECT_EQ(t.limits[1].seconds, 0.25);
-    expect_error([] { timing_of("end = 1.0\noutput_interval = 1.0\nstep = \"auto\"\nsafety = {contact = 0.0}", {limit("contact", 1.0)}); },
-                 {"time.safety.contact", "0", "(0, inf)"});
-    expect_error([] { timing_of("end = 1.0\noutput_interval = 1.0\nstep = \"auto\"\nsafety = {acoustic = 1.0}", {limit("contact", 1.0)}); },
-                 {"time.safety.acoustic", "unknown"});
+    expect_error(
+        [] {
+            timing_of("end = 1.0\noutput_interval = 1.0\nstep = \"auto\"\nsafety = {contact = 0.0}",
+                      {limit("contact", 1.0)});
+        },
+        {"time.safety.contact", "0", "(0, inf)"});
+    expect_error(
+        [] {
+            timing_of("end = 1.0\noutput_interval = 1.0\nstep = \"auto\"\nsafety = {acoustic = 1.0}",
+                      {limit("contact", 1.0)});
+        },
+        {"time.safety.acoustic", "unknown"});
 }
 
 // An explicit step is taken as it is, limits or not, but it must divide the output interval, and that the end.
 TEST(StableStep, ExplicitSteps) {
-    const Timing t = timing_of("end = 0.3\noutput_interval = 0.1\nstep = 0.001\nsnapshots = true", {limit("contact", 1e-9)});
+    const Timing t =
+        timing_of("end = 0.3\noutput_interval = 0.1\nstep = 0.001\nsnapshots = true", {limit("contact", 1e-9)});
     EXPECT_EQ(t.dt, 0.001);
     EXPECT_EQ(t.steps_per_output, 100);
     EXPECT_EQ(t.outputs, 3);
     EXPECT_EQ(t.ruling, "given");
     EXPECT_TRUE(t.snapshots);
-    expect_error([] { timing_of("end = 0.3\noutput_interval = 0.1\nstep = 0.003"); }, {"time.", "0.003", "whole number"});
+    expect_error([] { timing_of("end = 0.3\noutput_interval = 0.1\nstep = 0.003"); },
+                 {"time.", "0.003", "whole number"});
     expect_error([] { timing_of("end = 0.3\noutput_interval = 0.1\nstep = 0.2"); }, {"time.", "0.2", "whole number"});
     expect_error([] { timing_of("end = 0.25\noutput_interval = 0.1\nstep = 0.1"); }, {"time.end", "0.25", "0.1"});
     expect_error([] { timing_of("end = 0.05\noutput_interval = 0.1\nstep = 0.1"); }, {"time.end", "0.05"});
@@ -133,11 +145,12 @@ TEST(StableStep, ContactLimitOfTwoMaterialsByHand) {
         GrainSystem s = system_of(box(Vec3::Constant(1.0)), spring(1.0), {group_of("a", 2000.0), group_of("b", 8000.0)},
                                   {plane("floor", Vec3(0, 0, 0), Vec3(0, 0, 1))});
         const auto k = [&](int pair) { return pair == ruling ? 1e6 : 1e3; };
-        s.contact = contact_model({"a", "b", "floor"}, {contact_of(spring(k(0))), contact_of(spring(k(1))), std::nullopt}, 2,
-                                  {{"a", "b", contact_of(spring(k(2)))},
-                                   {"a", "floor", contact_of(spring(k(3)))},
-                                   {"b", "floor", contact_of(spring(k(4)))}},
-                                  "scene.toml");
+        s.contact =
+            contact_model({"a", "b", "floor"}, {contact_of(spring(k(0))), contact_of(spring(k(1))), std::nullopt}, 2,
+                          {{"a", "b", contact_of(spring(k(2)))},
+                           {"a", "floor", contact_of(spring(k(3)))},
+                           {"b", "floor", contact_of(spring(k(4)))}},
+                          "scene.toml");
         add(s, 2e-3, Vec3(0.1, 0.1, 0.1));
         add(s, 1e-3, Vec3(0.3, 0.1, 0.1)); // the lightest of a
         add(s, 1e-3, Vec3(0.5, 0.1, 0.1), Vec3::Zero(), Vec3::Zero(), 1);
@@ -153,7 +166,8 @@ TEST(StableStep, TangentialSpringsCanRule) {
                               "law = \"linear_spring\"\nstiffness = 1e3\nrestitution = 1.0\nfriction = 0.5\n"
                               "tangential_stiffness = 1e5\ntangential_damping = 0.0\nrolling = \"none\"\n");
     add(s, 1e-3, Vec3(0.5, 0.5, 0.5));
-    EXPECT_NEAR(contact_limit(s), pi * std::sqrt(0.5 * s.grains.mass[0] / (3.5 * 1e5)) / 20.0, 1e-12 * contact_limit(s));
+    EXPECT_NEAR(contact_limit(s), pi * std::sqrt(0.5 * s.grains.mass[0] / (3.5 * 1e5)) / 20.0,
+                1e-12 * contact_limit(s));
 }
 
 // Hertzian contacts are shorter the faster the impact: twice the fastest grain, plus the fall through the box.

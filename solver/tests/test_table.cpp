@@ -138,7 +138,8 @@ TEST(Table, RangesKeepTheirEnds) {
 TEST(Table, WholeNumbersBeyondDoublePrecision) {
     Table t = table_of("large = 9007199254740993\nhuge = 9223372036854775807");
     EXPECT_EQ(t.integer("huge"), std::numeric_limits<std::int64_t>::max());
-    for (const auto& [key, value] : {std::pair{"large", 9007199254740993.0}, std::pair{"huge", 9223372036854775807.0}}) {
+    for (const auto& [key, value] :
+         {std::pair{"large", 9007199254740993.0}, std::pair{"huge", 9223372036854775807.0}}) {
         try {
             EXPECT_NEAR(t.number(key), value, 1e-15 * value) << key;
         } catch (const InputError&) { // a refusal would be as good
@@ -215,7 +216,8 @@ TEST(Table, LawsByNameOrTable) {
 TEST(Table, MessagesAreOneLineWhateverTheValue) {
     std::string list = "[";
     for (int k = 0; k < 60; ++k) list += "1234.5678, ";
-    Table t = table_of("list = " + list + "]\nword = \"two\\nlines\"\nnested = [{a = 1, b = [1, 2]}, {c = {d = 1}}]\n"
+    Table t = table_of("list = " + list +
+                       "]\nword = \"two\\nlines\"\nnested = [{a = 1, b = [1, 2]}, {c = {d = 1}}]\n"
                        "\"odd\\nkey\" = 1");
     expect_error([&] { t.number("list"); }, {"list", "not a number"});
     expect_error([&] { t.number("nested"); }, {"nested", "not a number"});

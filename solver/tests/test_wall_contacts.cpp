@@ -50,8 +50,8 @@ TEST(WallContacts, ForcesByHand) {
 // Restitution and mass of a wall contact: e = exp(-pi) needs c = sqrt(2 k m) with m the grain's own mass.
 TEST(WallContacts, TheWallIsInfinitelyHeavy) {
     for (const std::string_view law : {"linear_spring", "linear_spring_coulomb"}) {
-        GrainSystem s = on_floor(fmt::format("law = \"{}\"\nstiffness = 1e4\nrestitution = {:.17e}\nfriction = 0.0\n", law,
-                                             std::exp(-std::numbers::pi)));
+        GrainSystem s = on_floor(fmt::format("law = \"{}\"\nstiffness = 1e4\nrestitution = {:.17e}\nfriction = 0.0\n",
+                                             law, std::exp(-std::numbers::pi)));
         add(s, radius, Vec3(5e-3, 5e-3, 1e-3 + radius), Vec3(0.0, 0.0, -0.1));
         s.grains.x[0].z() -= 1e-12;
         start(s);
@@ -65,7 +65,8 @@ TEST(WallContacts, TheWallIsInfinitelyHeavy) {
 TEST(WallContacts, MemorySurvivesStepsAndRebuilds) {
     GrainSystem s = on_floor(sticky);
     s.groups.push_back(group_of("pusher", 2500.0, false, Motion::fixed));
-    s.contact = contact_model({"glass", "pusher", "floor"}, {contact_of(sticky), contact_of(sticky), std::nullopt}, 2, {}, "s");
+    s.contact =
+        contact_model({"glass", "pusher", "floor"}, {contact_of(sticky), contact_of(sticky), std::nullopt}, 2, {}, "s");
     s.walls[0].material = 2;
     add(s, radius, Vec3(8e-3, 5e-3, 1e-3 + radius - 1e-6));
     s.domain.gravity.z() = -1e4 * 1e-6 / s.grains.mass[0]; // a weight that keeps this overlap; friction 10 holds it
