@@ -58,7 +58,7 @@ double probed(const std::string& keys) {
     const auto place = positions_of_ids(grains);
     grains.x[static_cast<std::size_t>(place[1])][0] = 7.5;
     bench.simulation.grains.started = false; // they were no neighbours where the scene put them
-    start(bench.simulation.grains);
+    start(bench.simulation.grains, bench.simulation.timing.dt);
     record(bench.probes, bench.simulation);
     return bench.probes.front().value.front();
 }
