@@ -67,9 +67,7 @@ TriangleMesh::TriangleMesh(Table& table)
 TriangleMesh::TriangleMesh(Triangles triangles) : mesh_(std::move(triangles)) {
     double largest = 0.0;
     for (const Vec3& p : mesh_.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
-    // Eight spacings (2^-23) of the single-precision coordinates of a binary file: each point is off by up to 0.87 of one,
-    // and the plane through three of them is carried to the fourth, three times as far away in a skew mesh.
-    flatness_ = 0x1p-20 * largest;
+    flatness_ = 0x1p-21 * largest; // four spacings (2^-23) of the single-precision coordinates of a binary file
     std::vector<std::int32_t> order(mesh_.corners.size());
     std::iota(order.begin(), order.end(), 0);
     build_tree(order, 0, order.size());

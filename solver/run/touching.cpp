@@ -11,8 +11,14 @@ namespace {
 double spring_energy(const NoContact& /*law*/, double /*overlap*/, double /*inverse_radius*/, double /*slide_sq*/) {
     return 0.0;
 }
+/// Energy of a tangential spring; friction bounds its force by mu times the elastic normal force.
+double tangential_energy(double stiffness, double slide_sq, double limit) {
+    return stiffness > 0.0 ? std::min(0.5 * stiffness * slide_sq, 0.5 * limit * limit / stiffness) : 0.0;
+}
 double spring_energy(const LinearSpring& law, double overlap, double /*inverse_radius*/, double slide_sq) {
-    return 0.5 * law.parameters.stiffness * overlap * overlap + 0.5 * law.parameters.tangential_stiffness * slide_sq;
+    const auto& p = law.parameters;
+    return 0.5 * p.stiffness * overlap * overlap +
+           tangential_energy(p.tangential_stiffness, slide_sq, p.friction * p.stiffness * overlap);
 }
 double spring_energy(const LinearSpringCoulomb& law, double overlap, double /*inverse_radius*/, double /*slide_sq*/) {
     return 0.5 * law.parameters.stiffness * overlap * overlap;
@@ -20,8 +26,9 @@ double spring_energy(const LinearSpringCoulomb& law, double overlap, double /*in
 double spring_energy(const HertzMindlin& law, double overlap, double inverse_radius, double slide_sq) {
     const double patch = std::sqrt(overlap / inverse_radius); // contact radius sqrt(R* o) [m]
     // 8/15 E* sqrt(R*) o^(5/2), the integral of Hertz's 4/3 E* sqrt(R*) o^(3/2)
-    return 8.0 / 15.0 * law.parameters.modulus * patch * overlap * overlap +
-           0.5 * (8.0 * law.parameters.shear_modulus * patch) * slide_sq;
+    const double normal_force = 4.0 / 3.0 * law.parameters.modulus * patch * overlap;
+    return 0.4 * normal_force * overlap + tangential_energy(8.0 * law.parameters.shear_modulus * patch, slide_sq,
+                                                            law.parameters.friction * normal_force);
 }
 
 double rolling_energy(const NoRolling& /*law*/, double /*bend_sq*/) { return 0.0; }
@@ -51,7 +58,9 @@ double contact_energy(const ContactModel& model, std::int32_t a, std::int32_t b,
             using Law = typename std::decay_t<decltype(contact.laws)>::value_type;
             using RollingLawType = typename std::decay_t<decltype(rolling.laws)>::value_type;
             double slide_sq = 0.0, bend_sq = 0.0;
-            if constexpr (Law::history > 0) slide_sq = stretch_now_sq(memory, 0, sliding.slip, normal, dt);
+            if constexpr (Law::history > 0)
+                if (contact.of(a, b).parameters.friction > 0.0) // else the spring never carries anything
+                    slide_sq = stretch_now_sq(memory, 0, sliding.slip, normal, dt);
             if constexpr (RollingLawType::history > 0)
                 bend_sq = stretch_now_sq(memory, Law::history, sliding.rotation, normal, dt);
             return spring_energy(contact.of(a, b), overlap, inverse_radius, slide_sq) +

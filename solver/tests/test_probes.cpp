@@ -195,7 +195,9 @@ TEST(ContactEnergy, TangentialSpring) {
     const toml::table data = toml::parse("law = \"linear_spring\"\nstiffness = 1e3\ndamping = 0.0\nfriction = 0.5\n"
                                          "tangential_stiffness = 300.0\ntangential_damping = 0.0");
     const auto law = make_family<ContactLaw>(Table(data, "contact", "test"));
-    EXPECT_NEAR(elastic_energy(law, 0.0, 1.0, 0.04), 0.5 * 300.0 * 0.04, 1e-12);
+    const double normal = 0.5 * 1e3 * 0.2 * 0.2;
+    EXPECT_NEAR(elastic_energy(law, 0.2, 1.0, 0.04), normal + 0.5 * 300.0 * 0.04, 1e-12); // 60 N of at most 100 N
+    EXPECT_NEAR(elastic_energy(law, 0.2, 1.0, 4.0), normal + 0.5 * 100.0 * 100.0 / 300.0, 1e-12); // friction's limit
 }
 
 TEST(SphereOverlap, Disc) {
