@@ -40,8 +40,7 @@ void pour(Scene& scene, const std::string& path) {
     write_text(path, text);
 }
 
-template <class FieldType>
-std::size_t bytes(const FieldType& field) {
+template <class FieldType> std::size_t bytes(const FieldType& field) {
     return field.capacity() * sizeof(typename FieldType::value_type);
 }
 

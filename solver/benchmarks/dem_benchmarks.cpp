@@ -44,10 +44,9 @@ bool register_all() {
                                                              {"dem_bed/20000", settled_bed}};
     for (const auto& [name, make] : scenes)
         for (const int threads : {1, 2})
-            benchmark::RegisterBenchmark((std::string(name) + "/threads:" + std::to_string(threads)).c_str(),
-                                         [make = make, threads](benchmark::State& state) {
-                                             advance_repeatedly(state, make, threads);
-                                         })
+            benchmark::RegisterBenchmark(
+                (std::string(name) + "/threads:" + std::to_string(threads)).c_str(),
+                [make = make, threads](benchmark::State& state) { advance_repeatedly(state, make, threads); })
                 ->Unit(benchmark::kMillisecond);
     return true;
 }

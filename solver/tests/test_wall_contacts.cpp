@@ -122,6 +122,15 @@ TEST(WallContacts, AMovingWallReflects) {
     }
 }
 
+// A list of near grains that only the motion of grains renews: the wall comes to a grain at rest and strikes it.
+TEST(WallContacts, AWallReachesAGrainAtRest) {
+    GrainSystem s = on_floor(smooth, Vec3(0.0, 0.0, 0.5));
+    add(s, radius, Vec3(5e-3, 5e-3, 4e-3));
+    const double time = (3e-3 - radius) / 0.5 + 4.0 * std::sqrt(s.grains.mass[0] / 1e4);
+    advance_grains(s, static_cast<std::int64_t>(time / 1e-6), 1e-6);
+    EXPECT_NEAR(s.grains.v[0].z(), 1.0, 1e-3);
+}
+
 // A belt: the wall drags a grain that does not slide along with it (friction against the velocity of the wall).
 TEST(WallContacts, AWallMovingInItsPlaneDrags) {
     GrainSystem s = on_floor(sticky, Vec3(0.3, 0.0, 0.0));
