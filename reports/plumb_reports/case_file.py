@@ -109,6 +109,11 @@ class Case:
         """The check with this id."""
         return next(c for c in self.checks if c.id == name)
 
+    def runs_in(self, variant, tier):
+        """Whether `tier` judges `variant`; one that no check names is only shown, in every tier."""
+        judging = [check for check in self.checks if variant.name in check.variants]
+        return not judging or any(tier in check.tiers for check in judging)
+
     def values_of(self, variant, tier):
         """Sweep values that `variant` runs in `tier`; (None,) without a sweep."""
         return self.sweep.values_of(tier) if self.sweep and variant.swept else (None,)

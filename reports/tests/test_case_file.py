@@ -1,8 +1,12 @@
 """case.toml: what is read, and one clear line for each mistake."""
 
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 from plumb_reports.__main__ import main
-from plumb_reports.case_file import read_case
+from plumb_reports.case_file import Variant, read_case
+from plumb_reports.plan import tier_plans
 from plumb_reports.strict import CaseError
 
 CHECK = r'\[\[check\]\]\nid = "velocity".*?\n\n'
@@ -30,6 +34,16 @@ def test_variants_and_campaign(case):
     assert read.values_of(read.variant("a"), "campaign")[-1] == 0.001
     assert read.values_of(read.variant("b"), "full") == (None,)
     assert read.check("terminal").variants == ("a", "b")
+
+
+def test_a_variant_that_only_another_tier_judges_is_not_run(case):
+    read = read_case(case.folder)
+    late = Variant("late", swept=False)
+    shown = Variant("shown", swept=False)  # named by no check: run in every tier
+    check = replace(read.check("velocity"), id="late", variants=("late",), tiers=("full",))
+    read = replace(read, variants=(*read.variants, late, shown), checks=(*read.checks, check))
+    assert {p.variant for p in tier_plans(read, "quick", Path("out"))} == {"default", "shown"}
+    assert {p.variant for p in tier_plans(read, "full", Path("out"))} == {"default", "late", "shown"}
 
 
 MISTAKES = [

@@ -179,10 +179,12 @@ void print_time(const Json& part, std::string& text) {
     for (const auto& [name, limit] : part["limits"].items())
         text += fmt::format("  {:<14}{} ({})\n", name, seconds(limit["seconds"]), limit["formula"].get<std::string>());
     text += fmt::format("contact law     {}\n", part["contact_law"].get<std::string>());
-    for (const Json& t : part["contact_times"])
-        text += fmt::format("  {:<14}contact time {}\n",
+    for (const Json& t : part["contact_times"]) {
+        if (!std::isfinite(t["seconds"].get<double>())) continue; // these pass through each other
+        text += fmt::format("  {:<14} contact time {}\n",
                             t["between"][0].get<std::string>() + " " + t["between"][1].get<std::string>(),
                             seconds(t["seconds"]));
+    }
 }
 
 void print_fluid(const Json& part, std::string& text) {

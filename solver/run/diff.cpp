@@ -64,8 +64,8 @@ std::optional<Difference> dataset_difference(const Pair& files, const std::strin
     }
     if (shape_a == shape_b) return std::nullopt;
     const double time = time_of(at / width);
-    return Difference{time, fmt::format("{} /{}: {} entries against {}, the same up to t = {:.17g} s", files.name, set,
-                                        shown(shape_a), shown(shape_b), time)};
+    return Difference{time, fmt::format("{} /{}: {} entries against {}; from t = {:.17g} s on in one only", files.name,
+                                        set, shown(shape_a), shown(shape_b), time)};
 }
 
 /// Names in both files; a name in one only is a difference.

@@ -72,12 +72,15 @@ std::string data_item(const SnapshotEntry& s, std::string_view field, std::size_
                        field);
 }
 
+/// One snapshot. Its cells are the points themselves; their numbers are the ids, because the rows are in that order
+/// (one of ParaView's two readers makes no cells without them).
 std::string xdmf_grid(const SnapshotEntry& s) {
     std::string text = fmt::format("      <Grid Name=\"grains\" GridType=\"Uniform\">\n"
                                    "        <Time Value=\"{:.17g}\"/>\n"
-                                   "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\"/>\n"
+                                   "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" "
+                                   "NodesPerElement=\"1\">{}</Topology>\n"
                                    "        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
-                                   s.time, s.grains, data_item(s, "x", 3, false));
+                                   s.time, s.grains, data_item(s, "id", 1, true), data_item(s, "x", 3, false));
     for (const char* name : {"v", "omega"})
         text += fmt::format("        <Attribute Name=\"{}\" AttributeType=\"Vector\" Center=\"Node\">{}</Attribute>\n",
                             name, data_item(s, name, 3, false));
