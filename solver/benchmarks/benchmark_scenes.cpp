@@ -60,7 +60,8 @@ Memory memory(const GrainSystem& system) {
     Memory sum;
     for_each_field(system.grains, [&](const char* /*name*/, const auto& field) { sum.grains += bytes(field); });
     const Neighbours& list = system.neighbours;
-    sum.grains += bytes(list.own) + bytes(list.incoming_begin) + bytes(list.records) + bytes(list.spins);
+    sum.grains +=
+        bytes(list.own) + bytes(list.incoming_begin) + bytes(list.slots) + bytes(list.records) + bytes(list.spins);
     const WallContacts& walls = system.wall_contacts;
     sum.grains += bytes(walls.near) + bytes(walls.slot) + bytes(walls.contacts);
     for (const auto& contacts : walls.contacts) sum.grains += bytes(contacts);

@@ -120,9 +120,15 @@ struct Wrench {
     const Neighbours& list = system.neighbours;
     PairForce own{}, incoming{};
     const PairForce* force = list.force.data();
-    for (std::int32_t p = list.own[k]; p < list.own[k + 1]; ++p) own += force[p];
     const std::int32_t* pair = list.incoming.data();
-    for (std::int32_t q = list.incoming_begin[k]; q < list.incoming_begin[k + 1]; ++q) incoming += force[pair[q]];
+    constexpr std::int32_t width = ForceSlots::width;
+    if (!list.slots.empty()) { // without contacts there is no list
+        const ForceSlots& slots = list.slots[k];
+        for (std::size_t q = 0; q < width; ++q) own += force[slots.own[q]], incoming += force[slots.incoming[q]];
+    }
+    for (std::int32_t p = list.own[k] + width; p < list.own[k + 1]; ++p) own += force[p];
+    for (std::int32_t q = list.incoming_begin[k] + width; q < list.incoming_begin[k + 1]; ++q)
+        incoming += force[pair[q]];
     const PairForce reaction{-1, -1, -1, 1, 1, 1, 0, 0}; // forces are opposite, torques per radius the same
     const PairForce sum = own + reaction * incoming;
     Wrench wrench{__builtin_shufflevector(sum, sum, 0, 1, 2, 6),

@@ -177,6 +177,21 @@ void index_pairs(Neighbours& list, std::size_t n) {
             static_cast<std::int32_t>(p);
 }
 
+/// Slots of the forces of every grain; the line after the last pair is the zero.
+void fill_slots(Neighbours& list, std::size_t n) {
+    const auto zero = static_cast<std::int32_t>(list.padded());
+    list.slots.resize(n);
+    parallel_for(n, [&](std::size_t k) {
+        for (std::int32_t q = 0; q < ForceSlots::width; ++q) {
+            const std::int32_t own = list.own[k] + q, other = list.incoming_begin[k] + q;
+            ForceSlots& slots = list.slots[k];
+            slots.own[static_cast<std::size_t>(q)] = own < list.own[k + 1] ? own : zero;
+            slots.incoming[static_cast<std::size_t>(q)] =
+                other < list.incoming_begin[k + 1] ? list.incoming[static_cast<std::size_t>(other)] : zero;
+        }
+    });
+}
+
 void mark_crossings(Neighbours& list, const Grains& grains, const Domain& domain) {
     list.crosses.assign(list.padded() / 8, 0);
     const Vec3 half = 0.5 * domain.size;
@@ -236,10 +251,11 @@ std::vector<std::int32_t> rebuild(Neighbours& list, Grains& grains, const std::v
     grains.x_listed = grains.x;
     list_pairs(list, cells, grains, groups, domain);
     index_pairs(list, grains.size());
+    fill_slots(list, grains.size());
     mark_crossings(list, grains, domain);
     list.stretch.assign(list.padded() * static_cast<std::size_t>(list.history), 0.0);
     restore(list, grains, memory);
-    list.force.assign(list.padded(), PairForce{});
+    list.force.assign(list.padded() + 1, PairForce{});
     list.couple.assign(list.rolls ? list.padded() : 0, PairCouple{});
     return order;
 }

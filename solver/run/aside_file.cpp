@@ -55,17 +55,16 @@ void fail_io(const std::string& path, std::string_view what, int code) {
 
 void publish(const std::string& path) {
     const std::string aside = aside_name(path);
-    const auto give_up = [&](std::string_view what) {
-        const int code = errno;
-        ::unlink(aside.c_str());
-        fail_io(path, what, code);
-    };
-    Descriptor file(aside, O_RDONLY);
-    if (file.number() < 0) give_up("written");
-    if (::fsync(file.number()) != 0 || !file.finish()) give_up("written");
-    if (::rename(aside.c_str(), path.c_str()) != 0) give_up("replaced");
-    // The new name must survive a power cut as well; some file systems do not allow to flush a folder, which is no
-    // loss.
+    if (::rename(aside.c_str(), path.c_str()) == 0) return;
+    const int code = errno;
+    ::unlink(aside.c_str());
+    fail_io(path, "replaced", code);
+}
+
+void flush_to_disk(const std::string& path) {
+    Descriptor file(path, O_RDONLY);
+    if (file.number() < 0 || ::fsync(file.number()) != 0 || !file.finish()) fail_io(path, "written", errno);
+    // Some file systems do not allow to flush a folder, which is no loss.
     const std::filesystem::path parent = std::filesystem::path(path).parent_path();
     const Descriptor folder(parent.empty() ? "." : parent.string(), O_RDONLY | O_DIRECTORY);
     if (folder.number() >= 0) ::fsync(folder.number());

@@ -16,7 +16,7 @@ namespace {
 
 // Wall times [s]: none of them changes a result.
 constexpr double series_interval = 1.0;      // least time between two writings of the same series
-constexpr double checkpoint_interval = 10.0; // and of a checkpoint
+constexpr double checkpoint_interval = 10.0; // and of a checkpoint; work worth waiting for the disk
 constexpr double least_pause = 20.0;         // in times of what the last writing took: at most 5 % of a run
 constexpr double chunk_time = 0.2;           // of steps between two looks at the signals
 
@@ -85,6 +85,7 @@ private:
     void add_snapshot(const std::string& name) {
         make_folder(folder_.file("snapshots"));
         write_snapshot(folder_.file(name), run_.simulation);
+        unflushed_.push_back(name);
         run_.snapshots.push_back({name, static_cast<double>(run_.simulation.grains.step) * run_.simulation.timing.dt,
                                   run_.simulation.grains.grains.size()});
     }
@@ -95,7 +96,14 @@ private:
         });
     }
     void write_checkpoint() {
-        checkpoint_.write([&] { save_checkpoint(folder_.file("checkpoint.h5"), run_, meter_.now()); });
+        checkpoint_.write([&] {
+            save_checkpoint(folder_.file("checkpoint.h5"), run_, meter_.now());
+            if (wall_time() - flushed_ < checkpoint_interval) return; // too little to lose
+            for (const std::string& name : unflushed_) flush_to_disk(folder_.file(name));
+            flush_to_disk(folder_.file("checkpoint.h5"));
+            unflushed_.clear();
+            flushed_ = wall_time();
+        });
     }
 
     Run& run_;
@@ -103,6 +111,8 @@ private:
     CostMeter meter_;
     Pace series_{series_interval};
     Pace checkpoint_{checkpoint_interval};
+    double flushed_ = wall_time();       // when the state was last safe from a power cut
+    std::vector<std::string> unflushed_; // snapshots written since
 };
 
 /// Takes the run to step `goal`, or less far if it is to be interrupted, a short time after another.
