@@ -1,5 +1,6 @@
 // Eight doubles side by side. Compiler vectors, not intrinsics: the same source gives AVX-512, AVX2 or SSE2 code, and
-// each lane does plain IEEE arithmetic, so a lane has the bits of the scalar formula.
+// each lane does plain IEEE arithmetic. A lane has the bits of the scalar formula where multiply-adds are not
+// contracted (PLUMB_PORTABLE); elsewhere the compiler may contract the two differently, in the last bit.
 #pragma once
 
 #include <cmath>

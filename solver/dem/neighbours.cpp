@@ -17,8 +17,9 @@ struct Cells {
 
     std::int32_t count() const { return n[0] * n[1] * n[2]; }
     std::int32_t along(int axis, double x) const {
-        const auto c = static_cast<std::int32_t>(std::floor(x * inverse_width[axis]));
-        return std::clamp(c, 0, n[static_cast<std::size_t>(axis)] - 1);
+        const std::int32_t last = n[static_cast<std::size_t>(axis)] - 1;
+        return static_cast<std::int32_t>(
+            std::clamp(std::floor(x * inverse_width[axis]), 0.0, static_cast<double>(last)));
     }
     std::int32_t of(const Vec3& x) const { return (along(2, x[2]) * n[1] + along(1, x[1])) * n[0] + along(0, x[0]); }
 };
