@@ -10,7 +10,7 @@ namespace plumb {
 /// Periodic face-centred cubic lattice of 17^3 cells: 19 652 grains, each pressed against twelve others.
 Simulation pressed_lattice();
 
-/// Settled random bed of 20 000 grains on a plane. The first call pours it, which takes about a minute, and keeps the
+/// Settled random bed of 20 000 grains on a plane. The first call pours it, which takes a minute or two, and keeps the
 /// positions in the build folder under a name that contains the hash of the pouring scene.
 Simulation settled_bed();
 
