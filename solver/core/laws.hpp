@@ -50,9 +50,10 @@ template <class Family> std::vector<LawEntry> law_entries() {
     return law_entries<Family>(std::make_index_sequence<std::variant_size_v<Family>>{});
 }
 
-/// The law of `Family` that `table` names in its key "law", built from that table. InputError for an unknown name.
-template <class Family, std::size_t... I> Family make_family(Table& table, std::index_sequence<I...> /*members*/) {
-    const std::string name = table.text("law");
+/// The law of `Family` that `table` names at `key`, built from that table. InputError for an unknown name.
+template <class Family, std::size_t... I>
+Family make_family(Table& table, std::string_view key, std::index_sequence<I...> /*members*/) {
+    const std::string name = table.text(key);
     std::optional<Family> made;
     const auto attempt = [&]<class Law>(std::type_identity<Law> /*type*/) {
         if (!made && name == Law::name) made.emplace(detail::make_law<Law>(table));
@@ -61,12 +62,12 @@ template <class Family, std::size_t... I> Family make_family(Table& table, std::
     if (!made) {
         std::string known;
         ((known += fmt::format("{}\"{}\"", I == 0 ? "" : ", ", std::variant_alternative_t<I, Family>::name)), ...);
-        table.fail("law", fmt::format("\"{}\" is not one of {}", name, known));
+        table.fail(key, fmt::format("\"{}\" is not one of {}", name, known));
     }
     return *std::move(made);
 }
-template <class Family> Family make_family(Table table) {
-    return make_family<Family>(table, std::make_index_sequence<std::variant_size_v<Family>>{});
+template <class Family> Family make_family(Table table, std::string_view key = "law") {
+    return make_family<Family>(table, key, std::make_index_sequence<std::variant_size_v<Family>>{});
 }
 
 /// Name of the law a variant holds.

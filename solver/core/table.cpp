@@ -163,7 +163,9 @@ std::vector<Vec3> Table::points(std::string_view key) {
     return values;
 }
 
-Table Table::child(std::string_view /*key*/, const toml::table& sub, std::string path) {
+Table Table::child(const toml::table& sub, std::string path) {
+    for (const Table& known : read_->children) // taken before: what was read then counts
+        if (known.path_ == path) return known;
     Table made(*this);
     made.table_ = std::shared_ptr<const toml::table>(table_, &sub);
     made.path_ = std::move(path);
@@ -175,12 +177,12 @@ Table Table::child(std::string_view /*key*/, const toml::table& sub, std::string
 Table Table::table(std::string_view key) {
     const toml::node& node = required(key, "a table");
     if (!node.is_table()) fail(key, fmt::format("{} is not a table", shown(node)));
-    return child(key, *node.as_table(), joined(path_, key));
+    return child(*node.as_table(), joined(path_, key));
 }
 
 Table Table::law(std::string_view key) {
     const toml::node& node = required(key, "the name of a law or a table {law = \"name\", ...}");
-    if (node.is_table()) return child(key, *node.as_table(), joined(path_, key));
+    if (node.is_table()) return child(*node.as_table(), joined(path_, key));
     if (!node.is_string())
         fail(key, fmt::format("{} is neither the name of a law nor a table {{law = \"name\", ...}}", shown(node)));
     Table made(toml::table{{"law", *node.value<std::string>()}}, joined(path_, key), file_);
@@ -193,12 +195,12 @@ std::vector<Table> Table::tables(std::string_view key) {
     const toml::node& node = required(key, "a table");
     std::vector<Table> values;
     if (const toml::table* sub = node.as_table()) {
-        values.push_back(child(key, *sub, joined(path_, key)));
+        values.push_back(child(*sub, joined(path_, key)));
     } else if (const toml::array* array = node.as_array()) {
         for (std::size_t i = 0; i < array->size(); ++i) {
             const toml::table* entry = array->get(i)->as_table();
             if (entry == nullptr) fail(key, "expected a table or an array of tables");
-            values.push_back(child(key, *entry, joined(path_, fmt::format("{}[{}]", key, i))));
+            values.push_back(child(*entry, joined(path_, fmt::format("{}[{}]", key, i))));
         }
     } else {
         fail(key, "expected a table or an array of tables");

@@ -55,7 +55,7 @@ public:
     Vec3 vector(std::string_view key, const Range& range = any_number);
     std::array<bool, 3> flags(std::string_view key);
     std::vector<Vec3> points(std::string_view key);
-    /// The sub-table at `key`; missing or of another type is an error.
+    /// The sub-table at `key`; missing or of another type is an error. Taken twice, both remember what either read.
     Table table(std::string_view key);
     /// A law: `key = "name"` or `key = {law = "name", ...}`; both give a table whose text("law") is the name.
     Table law(std::string_view key);
@@ -76,7 +76,7 @@ private:
     struct Read; // which keys were read, shared by copies of this table
     const toml::node& required(std::string_view key, std::string_view expected);
     double checked(std::string_view key, const toml::node& node, const Range& range) const;
-    Table child(std::string_view key, const toml::table& sub, std::string path);
+    Table child(const toml::table& sub, std::string path);
 
     std::shared_ptr<const toml::table> table_;
     std::string path_;

@@ -7,6 +7,7 @@
 #include "core/laws.hpp"
 #include "coupling/local_fluid.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -43,6 +44,7 @@ struct RestFlow {
     static constexpr std::string_view name = "rest";
     static constexpr LawInfo info{"u = 0", "any", "definition"};
     FlowPoint operator()(const Vec3& /*x*/, double /*t*/) const { return {}; }
+    double fastest(const Vec3& /*size*/) const { return 0.0; }
 };
 
 /// u = velocity.
@@ -58,6 +60,7 @@ struct UniformFlow {
         p.u = velocity;
         return p;
     }
+    double fastest(const Vec3& /*size*/) const { return velocity.norm(); }
 };
 
 /// u = rate (s - origin) along velocity_axis, s the coordinate along gradient_axis: plane Couette flow.
@@ -73,6 +76,9 @@ struct ShearFlow {
     explicit ShearFlow(Table& table) : rate(table.number("rate")), origin(table.number("origin")), axes(table) {}
     FlowPoint operator()(const Vec3& x, double /*t*/) const {
         return axes.point(rate * (x[axes.across] - origin), rate);
+    }
+    double fastest(const Vec3& size) const {
+        return std::abs(rate) * std::max(std::abs(origin), std::abs(size[axes.across] - origin));
     }
 };
 
@@ -95,6 +101,10 @@ struct ParabolicFlow {
         const double s = x[axes.across], scale = 4.0 * peak / ((upper - lower) * (upper - lower));
         return axes.point(scale * (s - lower) * (upper - s), scale * (lower + upper - 2.0 * s));
     }
+    double fastest(const Vec3& size) const { // in the middle, or outside the walls at an end of the box
+        const double at_ends = std::max((*this)(Vec3::Zero(), 0.0).u.norm(), (*this)(size, 0.0).u.norm());
+        return std::max(std::abs(peak), at_ends);
+    }
 };
 
 /// u = amplitude sin(2 pi frequency t), the same everywhere; starts from rest.
@@ -114,6 +124,7 @@ struct OscillatingFlow {
         p.acceleration = amplitude * (angular * std::cos(angular * t)); // u . grad u = 0 in a uniform field
         return p;
     }
+    double fastest(const Vec3& /*size*/) const { return amplitude.norm(); }
 };
 
 using PrescribedFlow = std::variant<RestFlow, UniformFlow, ShearFlow, ParabolicFlow, OscillatingFlow>;
@@ -121,6 +132,11 @@ using PrescribedFlow = std::variant<RestFlow, UniformFlow, ShearFlow, ParabolicF
 /// The prescribed flow at position x [m] and time t [s].
 inline FlowPoint flow_at(const PrescribedFlow& flow, const Vec3& x, double t) {
     return std::visit([&](const auto& law) { return law(x, t); }, flow);
+}
+
+/// Bound of the fluid's speed in a box of `size` [m] at any time [m/s].
+inline double fastest_speed(const PrescribedFlow& flow, const Vec3& size) {
+    return std::visit([&](const auto& law) { return law.fastest(size); }, flow);
 }
 
 } // namespace plumb

@@ -166,11 +166,6 @@ std::vector<Vec3> block_accelerations(const GrainSystem& system) {
     return force;
 }
 
-bool has_block(const GrainSystem& system) {
-    return std::any_of(system.groups.begin(), system.groups.end(),
-                       [](const GrainGroup& g) { return g.motion == Motion::block; });
-}
-
 /// Ends the step of grain k with the forces of the last evaluation and returns its new state, which stays in registers
 /// for the next drift: reading back what has just been stored in parts would stall. `corrects` is false when there was
 /// no step.
@@ -221,6 +216,11 @@ bool move_grains(GrainSystem& system, double dt, const FluidForcing* forcing, bo
         bool leaves = false;
         for (std::size_t k = begin; k < end; ++k) {
             const MotionState now = kicks ? kick_grain(system, k, dt, forcing, block, corrects) : motion_state(g, k);
+            if (!drifts && dt > 0.0) { // the last kick of a run: nothing later would notice
+                const double size = dot3(now.v, now.v) + dot3(now.omega, now.omega) + 0.0 * dot3(now.a, now.a);
+                if (!std::isfinite(size))
+                    throw Diverged(system.step, system.time, "velocity", g.id[k], std::sqrt(size), "not finite");
+            }
             if constexpr (drifts) {
                 const double moved_sq = drift_grain(system, k, now, dt, forcing, verlet);
                 // written so that NaN is caught; without contacts a grain may move as far as it likes
@@ -288,6 +288,12 @@ void prepare_lists(GrainSystem& system) {
     list.skin = std::isfinite(smallest) ? skin_in_radii * smallest : 0.0;
 }
 
+/// Lists of a system without contacts: only the places in the records are needed.
+void list_nothing(GrainSystem& system) {
+    system.neighbours.own.assign(system.grains.size() + 1, 0);
+    system.neighbours.incoming_begin.assign(system.grains.size() + 1, 0);
+}
+
 void check_box(const GrainSystem& system) {
     double largest = 0.0;
     for (const double r : system.grains.radius) largest = std::max(largest, r);
@@ -311,9 +317,8 @@ void start(GrainSystem& system, double dt, FluidForcing* forcing) {
         for (std::size_t k = listed - 1; k < g.size(); ++k)
             g.a[k] = (g.mobility[k] * g.mass[k]) * system.domain.gravity;
     prepare_lists(system);
-    if (contactless(system.contact)) { // no list: only the records' places are needed
-        system.neighbours.own.assign(g.size() + 1, 0);
-        system.neighbours.incoming_begin.assign(g.size() + 1, 0);
+    if (contactless(system.contact)) {
+        list_nothing(system);
         g.x_listed = g.x;
         fill_records(system);
     } else {
@@ -335,8 +340,7 @@ void restore_lists(GrainSystem& system, const std::vector<RememberedContact>& pa
     std::vector<Vec3> x(g.size()); // by id
     for (std::size_t k = 0; k < g.size(); ++k) x[static_cast<std::size_t>(g.id[k])] = g.x[k];
     if (contactless(system.contact)) {
-        system.neighbours.own.assign(g.size() + 1, 0);
-        system.neighbours.incoming_begin.assign(g.size() + 1, 0);
+        list_nothing(system);
     } else {
         g.x = g.x_listed;
         rebuild(system.neighbours, g, system.groups, system.domain, pairs);

@@ -86,6 +86,7 @@ template <bool radii, bool rolls>
     contact.velocity = Space<Pack>{d[4], d[5], d[6]} - out.lever * cross(spin, contact.normal);
     contact.inverse_mass = d[7];
     contact.time_step = broadcast<Pack>(dt);
+    contact.turn = (contact.time_step * inverse) * Space<Pack>{d[4], d[5], d[6]};
     if constexpr (radii || rolls)
         for (int k = 0; k < 8; ++k) {
             const auto a = static_cast<std::size_t>(i[k]), b = static_cast<std::size_t>(j[k]);
@@ -167,9 +168,9 @@ template <class Law, class RollingLawType>
     if constexpr (rolls) {
         const Pack normal_force = larger(f.normal, zero);
         const Space<Pack> twist = dot(b.rolling, b.contact.normal) * b.contact.normal;
-        const Rolling<Pack> state{b.contact.normal,  b.rolling - twist,
-                                  normal_force,      broadcast<Pack>(1.0) / b.contact.inverse_radius,
-                                  b.inverse_inertia, b.contact.time_step};
+        const Rolling<Pack> state{
+            b.contact.normal,  b.rolling - twist,   normal_force,  broadcast<Pack>(1.0) / b.contact.inverse_radius,
+            b.inverse_inertia, b.contact.time_step, b.contact.turn};
         double* bend_at = memory + 8 * Law::history;
         Space<Pack> bend{zero, zero, zero};
         if constexpr (RollingLawType::history > 0) bend = load_stretch(bend_at);

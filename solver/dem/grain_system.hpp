@@ -9,6 +9,7 @@
 #include "dem/wall_contacts.hpp"
 #include "dem/walls.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -34,5 +35,11 @@ struct GrainSystem {
     double listed_time = 0.0;       // when the neighbour and wall lists were built [s]
     bool started = false;           // the lists and accelerations exist
 };
+
+/// True if grains of some group move as one.
+inline bool has_block(const GrainSystem& system) {
+    return std::any_of(system.groups.begin(), system.groups.end(),
+                       [](const GrainGroup& g) { return g.motion == Motion::block; });
+}
 
 } // namespace plumb

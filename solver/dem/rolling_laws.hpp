@@ -3,6 +3,7 @@
 
 #include "core/laws.hpp"
 #include "core/simd.hpp"
+#include "dem/contact_laws.hpp"
 
 namespace plumb {
 
@@ -13,6 +14,7 @@ template <class T> struct Rolling {
     T radius;          // R_i R_j / (R_i + R_j) [m]
     T inverse_inertia; // 1/I_i + 1/I_j [1/(kg m2)]
     T time_step;       // [s]
+    Space<T> turn;     // of the normal during the step [rad]
 };
 
 struct NoRolling {
@@ -25,10 +27,11 @@ struct NoRolling {
     Parameters<double> parameters;
 };
 
-/// Constant couple against the rotation (type A of Ai et al. 2011). Limited to what stops the rotation in one step.
+/// Constant couple against the rotation (type A of Ai et al. 2011), near rest at most `stopping_share` of what stops
+/// it.
 struct ConstantTorque {
     static constexpr std::string_view name = "constant_torque";
-    static constexpr LawInfo info{"m = -mu_r R* f_n w/|w|, at most the couple that stops w in one step", "any",
+    static constexpr LawInfo info{"m = -mu_r R* f_n w/|w|, at most 1/3 of the couple that stops w in one step", "any",
                                   "Ai, Chen, Rotter & Ooi 2011, Powder Technol. 206, 269, model A"};
     static constexpr int history = 0;
     template <class T> struct Parameters {
@@ -41,7 +44,7 @@ struct ConstantTorque {
     [[gnu::always_inline]] static Space<T> torque(const Rolling<T>& r, const Parameters<T>& p, Space<T>& /*stretch*/) {
         const T zero = broadcast<T>(0.0);
         const T speed = square_root(dot(r.rotation, r.rotation));
-        const T stopping = speed / (r.inverse_inertia * r.time_step);
+        const T stopping = broadcast<T>(stopping_share) * speed / (r.inverse_inertia * r.time_step);
         const T magnitude = smaller(p.friction * r.radius * r.normal_force, stopping);
         return select(speed > zero, zero - magnitude / speed, zero) * r.rotation;
     }
@@ -67,8 +70,7 @@ struct ElasticPlastic {
     template <class T>
     [[gnu::always_inline]] static Space<T> torque(const Rolling<T>& r, const Parameters<T>& p, Space<T>& stretch) {
         const T zero = broadcast<T>(0.0), one = broadcast<T>(1.0), half_step = broadcast<T>(0.5) * r.time_step;
-        Space<T> now = stretch + half_step * r.rotation;
-        now = now - dot(now, r.normal) * r.normal;
+        Space<T> now = turned(stretch, r.normal, r.turn) + half_step * r.rotation;
         const T bend = p.stiffness * square_root(dot(now, now));
         const T limit = p.friction * r.radius * r.normal_force;
         const auto yields = bend > limit;

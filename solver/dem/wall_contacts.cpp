@@ -27,12 +27,14 @@ void apply_laws(WallContact& contact, const WallPoint& point, const Law& law, co
     const Vec3 v(grain.vx, grain.vy, grain.vz), surface(spin.x, spin.y, spin.z); // surface = R omega
     const Space<double> n = space(point.normal);
     const double lever = point.distance / grain.radius;
+    const Space<double> still{0.0, 0.0, 0.0}; // the normal of a plane does not turn; on a curve springs are first order
     const Contact<double> state{grain.radius - point.distance,
                                 n,
                                 space(v - wall_velocity) - lever * cross(space(surface), n),
                                 grain.inverse_mass,
                                 1.0 / grain.radius,
-                                dt};
+                                dt,
+                                still};
     Space<double> stretch = remembered(contact, 0);
     const ContactForce<double> f = Law::force(state, law.parameters, stretch);
     if constexpr (Law::history > 0) remember(contact, 0, stretch);
@@ -47,7 +49,8 @@ void apply_laws(WallContact& contact, const WallPoint& point, const Law& law, co
                                       std::max(f.normal, 0.0),
                                       r,
                                       2.5 * grain.inverse_mass / (r * r),
-                                      dt};
+                                      dt,
+                                      still};
         Space<double> bend = remembered(contact, Law::history);
         contact.torque += vec(RollingLawType::torque(turning, rolling.parameters, bend));
         if constexpr (RollingLawType::history > 0) remember(contact, Law::history, bend);

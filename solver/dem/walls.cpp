@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <optional>
 #include <set>
 
 namespace plumb {
@@ -14,17 +13,6 @@ Vec3 direction(Table& table, std::string_view key) {
     const double length = given.stableNorm();
     if (!(length > 0.0)) table.fail(key, "is zero; expected a direction");
     return (given / length).normalized(); // twice: the first quotient of a denormal length is inexact
-}
-
-// Walls name their law in the key "shape", because "law" would say nothing in a [[wall]] table.
-template <std::size_t... I> Wall make_shape(Table& table, std::index_sequence<I...> /*members*/) {
-    const std::string shape = table.choice("shape", {std::variant_alternative_t<I, Wall>::name...});
-    std::optional<Wall> made;
-    const auto attempt = [&]<class Shape>(std::type_identity<Shape> /*type*/) {
-        if (!made && shape == Shape::name) made.emplace(Shape(table));
-    };
-    (attempt(std::type_identity<std::variant_alternative_t<I, Wall>>{}), ...);
-    return *std::move(made);
 }
 
 } // namespace
@@ -49,7 +37,7 @@ std::vector<WallBody> make_walls(std::vector<Table>& tables) {
     for (Table& table : tables) {
         std::string name = table.text("name");
         if (!names.insert(name).second) table.fail("name", fmt::format("\"{}\" is used by two walls", name));
-        Wall shape = make_shape(table, std::make_index_sequence<std::variant_size_v<Wall>>{});
+        auto shape = make_family<Wall>(table, "shape"); // "law" would say nothing in a [[wall]] table
         const Vec3 velocity = table.has("velocity") ? table.vector("velocity") : Vec3::Zero();
         walls.push_back(WallBody{std::move(name), std::move(shape), velocity});
     }

@@ -58,31 +58,15 @@ Json grains_part(const Simulation& s) {
     return part;
 }
 
-/// Contact time of the smallest grains of every pair of materials, at 1 m/s where it depends on the speed (Hertz).
-Json contact_times(const GrainSystem& system) {
-    const std::size_t groups = system.groups.size();
-    std::vector<double> mass(groups, 0.0), radius(groups, 0.0);
-    const Grains& g = system.grains;
-    for (std::size_t k = 0; k < g.size(); ++k) {
-        const auto q = static_cast<std::size_t>(g.group[k]);
-        if (radius[q] == 0.0 || g.radius[k] < radius[q]) radius[q] = g.radius[k], mass[q] = g.mass[k];
-    }
+/// Contact times of all pairs of materials, at 1 m/s where they depend on the speed (Hertz).
+Json contact_times_part(const GrainSystem& system) {
+    const auto name = [&](std::size_t m) {
+        const std::size_t groups = system.groups.size();
+        return m < groups ? system.groups[m].name : system.walls[m - groups].name;
+    };
     Json times = Json::array();
-    for (std::size_t a = 0; a < groups; ++a)
-        for (std::size_t b = a; b < groups + system.walls.size(); ++b) {
-            const bool wall = b >= groups;
-            if (radius[a] == 0.0 || (!wall && radius[b] == 0.0)) continue;
-            const double inverse_mass = 1.0 / mass[a] + (wall ? 0.0 : 1.0 / mass[b]);
-            const double inverse_radius = 1.0 / radius[a] + (wall ? 0.0 : 1.0 / radius[b]);
-            const double time = std::visit(
-                [&](const auto& laws) {
-                    const auto& law = laws.of(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
-                    return law.contact_time(inverse_mass, inverse_radius, 1.0);
-                },
-                system.contact.contact);
-            const std::string& other = wall ? system.walls[b - groups].name : system.groups[b].name;
-            times.push_back({{"between", {system.groups[a].name, other}}, {"seconds", time}});
-        }
+    for (const PairTime& pair : contact_times(system, 1.0))
+        times.push_back({{"between", {name(pair.a), name(pair.b)}}, {"seconds", pair.seconds}});
     return times;
 }
 
@@ -96,7 +80,7 @@ Json step_part(const Simulation& s) {
     part["outputs"] = t.outputs + 1;
     part["contact_law"] = std::visit([](const auto& pairs) { return law_name(ContactLaw(pairs.laws.front())); },
                                      s.grains.contact.contact);
-    part["contact_times"] = contact_times(s.grains);
+    part["contact_times"] = contact_times_part(s.grains);
     return part;
 }
 

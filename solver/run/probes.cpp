@@ -37,21 +37,6 @@ std::int64_t steps_between_records(Table& table, const Timing& timing) {
     return static_cast<std::int64_t>(whole);
 }
 
-/// As make_family, by the key "quantity".
-template <std::size_t... I> ProbeQuantity made_quantity(Table& table, std::index_sequence<I...> /*members*/) {
-    const std::string name = table.text("quantity");
-    std::optional<ProbeQuantity> made;
-    const auto attempt = [&]<class Quantity>(std::type_identity<Quantity> /*type*/) {
-        if (!made && name == Quantity::name) made.emplace(Quantity(table));
-    };
-    (attempt(std::type_identity<std::variant_alternative_t<I, ProbeQuantity>>{}), ...);
-    if (made) return *std::move(made);
-    std::string known;
-    for (const LawEntry& entry : law_entries<ProbeQuantity>())
-        known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", entry.name);
-    table.fail("quantity", fmt::format("\"{}\" is not one of {}", name, known));
-}
-
 } // namespace
 
 bool Probe::per_grain() const {
@@ -67,7 +52,7 @@ std::vector<Probe> read_probes(Scene& scene, const Simulation& simulation) {
     std::set<std::string> names;
     for (Table& table : scene.root.tables("probe")) {
         std::string name = checked_name(table, names);
-        ProbeQuantity quantity = made_quantity(table, std::make_index_sequence<std::variant_size_v<ProbeQuantity>>{});
+        auto quantity = make_family<ProbeQuantity>(table, "quantity");
         std::visit(
             [&](auto& q) {
                 if constexpr (requires { q.bind(simulation, table); }) q.bind(simulation, table);

@@ -256,8 +256,13 @@ void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt) {
         own[k] = g.mobility[k] == 0.0 ? write_fixed(fluid, system, history, k, dt)
                                       : forcing_of_grain(fluid, system, history, k, dt);
     });
-    std::vector<OneForcing> shared = own;
-    share_in_blocks(system, shared);
+    const bool shares = has_block(system);
+    std::vector<OneForcing> of_blocks;
+    if (shares) {
+        of_blocks = own;
+        share_in_blocks(system, of_blocks);
+    }
+    const std::vector<OneForcing>& shared = shares ? of_blocks : own;
     parallel_for(n, [&](std::size_t k) {
         if (g.mobility[k] != 0.0) write_forcing(fluid, system, k, own[k], shared[k], dt);
     });

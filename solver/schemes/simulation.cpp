@@ -89,6 +89,13 @@ StepLimit drag_limit(const FluidOnGrains& fluid, const GrainSystem& system) {
             "2 tau_p, explicit exchange only"};
 }
 
+std::vector<double> probe_intervals(Table& root) {
+    std::vector<double> intervals;
+    for (Table& probe : root.tables("probe"))
+        if (probe.has("interval")) intervals.push_back(probe.number("interval", positive));
+    return intervals;
+}
+
 /// Forces at t = 0 for the probes, without touching the state of the run.
 void show_initial_forces(FluidOnGrains& fluid, const GrainSystem& system, double dt) {
     FluidOnGrains copy = fluid;
@@ -146,10 +153,11 @@ Simulation make_simulation(Scene& scene) {
     }
     Table time = root.table("time");
     s.grains.integrator = read_integrator(time);
-    std::vector<StepLimit> limits = grain_limits(s.grains);
+    std::vector<StepLimit> limits =
+        grain_limits(s.grains, s.fluid ? fastest_speed(s.fluid->flow, s.grains.domain.size) : 0.0);
     if (s.fluid && std::holds_alternative<ExplicitExchange>(s.fluid->exchange))
         limits.push_back(drag_limit(*s.fluid, s.grains));
-    s.timing = timing(time, std::move(limits));
+    s.timing = timing(time, std::move(limits), probe_intervals(root));
     if (s.fluid) set_inertia(*s.fluid, s.grains, s.timing.dt);
     start(s.grains, s.timing.dt);
     if (s.fluid) show_initial_forces(*s.fluid, s.grains, s.timing.dt);

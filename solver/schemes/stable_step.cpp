@@ -15,8 +15,8 @@ namespace {
 constexpr double steps_per_contact = 20.0;
 
 /// Speed at which grains may meet [m/s]: only Hertzian contacts ask for it.
-double impact_speed(const GrainSystem& system) {
-    double fastest = 0.0;
+double impact_speed(const GrainSystem& system, double fluid_speed) {
+    double fastest = fluid_speed;
     for (const Vec3& v : system.grains.v) fastest = std::max(fastest, v.norm());
     for (const WallBody& wall : system.walls) fastest = std::max(fastest, wall.velocity.norm());
     for (const Injector& injector : system.injectors) fastest = std::max(fastest, injector.velocity.norm());
@@ -51,34 +51,60 @@ std::int64_t whole_ratio(Table& time, std::string_view key, double interval, dou
     return static_cast<std::int64_t>(std::nearbyint(ratio));
 }
 
+/// The longest time of which the output interval and all probe intervals are whole multiples, by Euclid's algorithm on
+/// numbers that are equal within their rounding.
+double common_interval(Table& time, double output_interval, const std::vector<double>& probe_intervals, double limit) {
+    double common = output_interval;
+    for (const double interval : probe_intervals) {
+        double a = std::max(common, interval), b = std::min(common, interval);
+        const double least = 1e-3 * std::min(b, limit);
+        for (double rest = std::abs(std::remainder(a, b)); rest > 1e-9 * b; rest = std::abs(std::remainder(a, b))) {
+            if (rest < least)
+                time.fail("step",
+                          fmt::format("\"auto\" needs a step that divides both {} s and the probe interval {} s; "
+                                      "the longest is a thousand times shorter than needed",
+                                      output_interval, interval));
+            a = b, b = rest;
+        }
+        common = b;
+    }
+    return common;
+}
+
 } // namespace
 
-std::vector<StepLimit> grain_limits(const GrainSystem& system) {
+std::vector<PairTime> contact_times(const GrainSystem& system, double speed) {
     std::vector<Extremes> least(system.groups.size());
     for (std::size_t k = 0; k < system.grains.size(); ++k) {
         Extremes& e = least[static_cast<std::size_t>(system.grains.group[k])];
         e.mass = std::min(e.mass, system.grains.mass[k]);
         e.radius = std::min(e.radius, system.grains.radius[k]);
     }
-    const double speed = impact_speed(system);
     const std::size_t groups = system.groups.size(), materials = groups + system.walls.size();
-    double shortest = std::numeric_limits<double>::infinity();
-    const auto shorten = [&](const auto& pairs) {
-        for (std::size_t a = 0; a < groups; ++a)
-            for (std::size_t b = a; b < materials; ++b) {
-                if (!std::isfinite(least[a].mass) || (b < groups && !std::isfinite(least[b].mass))) continue;
-                const bool wall = b >= groups;
-                const double inverse_mass = 1.0 / least[a].mass + (wall ? 0.0 : 1.0 / least[b].mass);
-                const double inverse_radius = 1.0 / least[a].radius + (wall ? 0.0 : 1.0 / least[b].radius);
+    std::vector<PairTime> times;
+    for (std::size_t a = 0; a < groups; ++a)
+        for (std::size_t b = a; b < materials; ++b) {
+            if (!std::isfinite(least[a].mass) || (b < groups && !std::isfinite(least[b].mass))) continue;
+            const bool wall = b >= groups;
+            const double inverse_mass = 1.0 / least[a].mass + (wall ? 0.0 : 1.0 / least[b].mass);
+            const double inverse_radius = 1.0 / least[a].radius + (wall ? 0.0 : 1.0 / least[b].radius);
+            const auto time = [&](const auto& pairs) {
                 const auto& law = pairs.of(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
-                shortest = std::min(shortest, law.contact_time(inverse_mass, inverse_radius, speed));
-            }
-    };
-    std::visit(shorten, system.contact.contact);
+                return law.contact_time(inverse_mass, inverse_radius, speed);
+            };
+            times.push_back({a, b, std::visit(time, system.contact.contact)});
+        }
+    return times;
+}
+
+std::vector<StepLimit> grain_limits(const GrainSystem& system, double fluid_speed) {
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const PairTime& pair : contact_times(system, impact_speed(system, fluid_speed)))
+        shortest = std::min(shortest, pair.seconds);
     return {{"contact", shortest / steps_per_contact, "shortest contact time / 20"}};
 }
 
-Timing timing(Table& time, std::vector<StepLimit> limits) {
+Timing timing(Table& time, std::vector<StepLimit> limits, const std::vector<double>& probe_intervals) {
     Timing t;
     t.end = time.number("end", positive);
     t.output_interval = time.number("output_interval", positive);
@@ -95,9 +121,11 @@ Timing timing(Table& time, std::vector<StepLimit> limits) {
     if (time.type("step") == toml::node_type::string) {
         time.choice("step", {"auto"});
         const double limit = least == t.limits.end() ? std::numeric_limits<double>::infinity() : least->seconds;
-        t.steps_per_output = whole_steps(time, t.output_interval, limit);
+        const double common = common_interval(time, t.output_interval, probe_intervals, limit);
+        t.steps_per_output = whole_ratio(time, "output_interval", t.output_interval, common, "common intervals") *
+                             whole_steps(time, common, limit);
         t.dt = t.output_interval / static_cast<double>(t.steps_per_output);
-        t.ruling = limit < t.output_interval ? least->name : "output_interval";
+        t.ruling = limit < common ? least->name : common < t.output_interval ? "probe_interval" : "output_interval";
     } else {
         t.dt = time.number("step", positive);
         t.steps_per_output = whole_ratio(time, "output_interval", t.output_interval, t.dt, "steps");

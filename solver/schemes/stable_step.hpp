@@ -28,10 +28,22 @@ struct Timing {
     std::string ruling; // name of the least limit, "output_interval" or "given"
 };
 
-/// Limits of the grains: the contact time of the fastest pair over `steps_per_contact`, for every pair of materials.
-std::vector<StepLimit> grain_limits(const GrainSystem& system);
+/// Shortest contact of two materials: that of their smallest grains.
+struct PairTime {
+    std::size_t a, b; // groups, or walls from groups.size() on
+    double seconds;   // infinite when they pass through each other
+};
 
-/// Reads the [time] table and chooses the step. InputError when an explicit step does not divide the intervals.
-Timing timing(Table& time, std::vector<StepLimit> limits);
+/// One entry per pair of materials of which grains exist. `speed` [m/s] is that of the impact, for Hertzian contacts.
+std::vector<PairTime> contact_times(const GrainSystem& system, double speed);
+
+/// Limits of the grains: the shortest contact time over `steps_per_contact`. A fluid carries grains at up to
+/// `fluid_speed` [m/s].
+std::vector<StepLimit> grain_limits(const GrainSystem& system, double fluid_speed = 0.0);
+
+/// Reads the [time] table and chooses the step. An automatic one divides the output interval and all
+/// `probe_intervals` [s]. InputError when an explicit step does not divide the output interval, or when the intervals
+/// have no common divisor near the limit.
+Timing timing(Table& time, std::vector<StepLimit> limits, const std::vector<double>& probe_intervals = {});
 
 } // namespace plumb

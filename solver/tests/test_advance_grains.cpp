@@ -140,6 +140,43 @@ TEST(AdvanceGrains, TangentialSpringOfAnInitialContactIsSecondOrder) {
     EXPECT_NEAR(order_of(std::abs(coarse - middle), std::abs(middle - fine), 2.0), 2.0, 0.3);
 }
 
+// The same while a Hertzian contact is being loaded, where the tangential stiffness grows: the force carried over from
+// the step before must see the overlap of that time to second order.
+TEST(AdvanceGrains, TangentialForceOfALoadingHertzianContactIsSecondOrder) {
+    const auto spin_after = [](double step) {
+        GrainSystem s =
+            system_of(box(Vec3::Constant(1e-2)), "law = \"hertz_mindlin\"\nyoung = 2e7\npoisson = 0.25\n"
+                                                 "restitution = 1.0\nfriction = 100.0\nrolling = \"none\"\n");
+        add(s, radius, Vec3(4e-3, 5e-3, 5e-3), Vec3(0.2, 1e-1, 0.0));
+        add(s, radius, Vec3(4.995e-3, 5e-3, 5e-3));
+        advance_grains(s, std::llround(1.28e-5 / step), step);
+        EXPECT_LT(s.grains.v[0].x() - s.grains.v[1].x(), 0.19); // being loaded, and felt
+        EXPECT_GT(s.grains.v[0].x() - s.grains.v[1].x(), 0.02);
+        return s.grains.omega[0].z();
+    };
+    const double coarse = spin_after(4e-7), middle = spin_after(2e-7), fine = spin_after(1e-7);
+    EXPECT_NEAR(order_of(std::abs(coarse - middle), std::abs(middle - fine), 2.0), 2.0, 0.3);
+}
+
+// Forces without memory that alternate in sign every step for ever once a grain rests or rolls.
+TEST(AdvanceGrains, HistoryFreeFrictionAndRollingComeToRest) {
+    const std::string contact = "law = \"linear_spring_coulomb\"\nstiffness = 1e4\nrestitution = 0.5\nfriction = 0.5\n";
+    for (const std::string rolling : {"\"none\"", "{law = \"constant_torque\", friction = 0.05}"})
+        for (const bool rotation : {true, false}) {
+            GrainSystem s =
+                system_of(box(Vec3::Constant(1e-2), {}, Vec3(0, 0, -9.81)), contact + "rolling = " + rolling + "\n",
+                          {group_of("a", 2500.0, rotation)}, {plane("floor", Vec3(0, 0, 0), Vec3(0, 0, 1))});
+            add(s, radius, Vec3(2e-3, 5e-3, radius), Vec3(1e-3, 0.0, 0.0));
+            advance_grains(s, 10000, dt); // slides for 0.2 ms (rolls after two thirds of it), rolls for 2 ms at most
+            const double weight = s.grains.mass[0] * 9.81;
+            for (int k = 0; k < 20; ++k) {
+                EXPECT_LT(std::abs(contact_forces(s)[0].x()), 1e-6 * weight) << rolling << rotation << k;
+                EXPECT_LT(s.grains.alpha[0].norm() * radius, 1e-6 * 9.81) << rolling << rotation << k;
+                advance_grains(s, 1, dt);
+            }
+        }
+}
+
 // Fixed grains that recoil, fall or stop: they keep their velocity whatever hits them.
 TEST(AdvanceGrains, FixedGrainsKeepTheirVelocity) {
     GrainSystem s = system_of(box(Vec3::Constant(1e-2), {}, Vec3(0, 0, -9.81)), rough,
@@ -302,6 +339,16 @@ TEST(AdvanceGrains, NotANumberIsReported) {
     add(same, radius, Vec3(0.5, 0.5, 0.5));
     add(same, radius, Vec3(0.5, 0.5, 0.5));
     EXPECT_THROW(advance_grains(same, 2, 1e-6), Diverged);
+}
+// One made by the forces of the last step of all: no later drift sees it.
+TEST(AdvanceGrains, NotANumberInTheLastKickIsReported) {
+    GrainSystem s = system_of(box(Vec3::Constant(1.0)), elastic);
+    add(s, radius, Vec3(0.5, 0.5, 0.5));
+    add(s, radius, Vec3(0.5, 0.5, 0.5 + 3.0 * radius), Vec3(0.0, 0.0, -0.5 * radius / 1e-3));
+    add(s, radius, Vec3(0.5, 0.5, 0.5 + 6.0 * radius));
+    start(s, 1e-3);
+    s.domain.gravity.x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_THROW(advance_grains(s, 1, 1e-3), Diverged);
 }
 TEST(AdvanceGrains, ASpinThatIsNotANumberIsReported) {
     GrainSystem s = system_of(box(Vec3::Constant(1.0)), rough);

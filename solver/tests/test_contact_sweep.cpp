@@ -47,6 +47,11 @@ Vec3 limited(const Vec3& trial, double limit) {
     return trial.norm() > limit ? Vec3(-limit * trial.normalized()) : Vec3(-trial);
 }
 
+/// A memory of the old contact plane in the new one, right to second order in the angle `turn`.
+Vec3 turned_by_hand(const Vec3& old, const Vec3& n, const Vec3& turn) {
+    return without(old, n) + 0.5 * old.dot(n) * turn;
+}
+
 /// Force on i of two touching grains, as in the papers named at the laws.
 PairResult pair_result(const GrainSystem& s, std::size_t i, std::size_t j, const std::string& contact,
                        const std::string& rolling, const Numbers& p, Vec3 stretch, Vec3 bend, double dt) {
@@ -60,7 +65,7 @@ PairResult pair_result(const GrainSystem& s, std::size_t i, std::size_t j, const
     const Vec3 v = (g.v[i] + g.omega[i].cross(-arm_i * n)) - (g.v[j] + g.omega[j].cross(arm_j * n));
     const double vn = v.dot(n), m = 1.0 / (1.0 / g.mass[i] + 1.0 / g.mass[j]);
     const double r = 1.0 / (1.0 / g.radius[i] + 1.0 / g.radius[j]);
-    const Vec3 vt = v - vn * n;
+    const Vec3 vt = v - vn * n, turn = dt / distance * without(g.v[i] - g.v[j], n);
     const double log_e = std::log(p.restitution), beta = -log_e / std::hypot(std::numbers::pi, log_e);
     double fn = 0.0;
     Vec3 ft;
@@ -70,9 +75,9 @@ PairResult pair_result(const GrainSystem& s, std::size_t i, std::size_t j, const
         const double sn = 2.0 * e_star * std::sqrt(r * overlap), st = 8.0 * g_star * std::sqrt(r * overlap);
         const double damping = 2.0 * std::sqrt(5.0 / 6.0) * beta; // Tsuji's form of the same damping
         fn = 2.0 / 3.0 * sn * overlap - damping * std::sqrt(sn * m) * vn;
-        const double before = std::max(0.0, overlap + vn * dt);
+        const double before = std::max(0.0, overlap + vn * dt - 0.5 * dt * dt * fn / m);
         if (before < overlap) stretch *= std::sqrt(before / overlap);
-        const Vec3 now = without(stretch + 0.5 * dt * vt, n);
+        const Vec3 now = turned_by_hand(stretch, n, turn) + 0.5 * dt * vt;
         const double ct = damping * std::sqrt(st * m);
         ft = limited(st * now + ct * vt, p.friction * std::max(0.0, fn));
         out.stretch = (-ft - ct * vt) / st + 0.5 * dt * vt;
@@ -80,11 +85,11 @@ PairResult pair_result(const GrainSystem& s, std::size_t i, std::size_t j, const
         fn = p.stiffness * overlap - 2.0 * beta * std::sqrt(p.stiffness * m) * vn;
         const double limit = p.friction * std::max(0.0, fn);
         if (contact == "linear_spring") {
-            const Vec3 now = without(stretch + 0.5 * dt * vt, n);
+            const Vec3 now = turned_by_hand(stretch, n, turn) + 0.5 * dt * vt;
             ft = limited(p.tangential_stiffness * now + p.tangential_damping * vt, limit);
             out.stretch = (-ft - p.tangential_damping * vt) / p.tangential_stiffness + 0.5 * dt * vt;
         } else {
-            ft = -std::min(limit, 2.0 / 7.0 * m * vt.norm() / dt) * vt.normalized();
+            ft = -std::min(limit, 1.0 / 3.0 * 2.0 / 7.0 * m * vt.norm() / dt) * vt.normalized();
         }
     }
     out.force = fn * n + ft;
@@ -95,9 +100,9 @@ PairResult pair_result(const GrainSystem& s, std::size_t i, std::size_t j, const
     const double inertia =
         1.0 / (2.5 / (g.mass[i] * g.radius[i] * g.radius[i]) + 2.5 / (g.mass[j] * g.radius[j] * g.radius[j]));
     Vec3 couple = Vec3::Zero();
-    if (rolling == "constant_torque") couple = -std::min(yield, w.norm() * inertia / dt) * w.normalized();
+    if (rolling == "constant_torque") couple = -std::min(yield, 1.0 / 3.0 * w.norm() * inertia / dt) * w.normalized();
     if (rolling == "elastic_plastic") {
-        Vec3 now = without(bend + 0.5 * dt * w, n);
+        Vec3 now = turned_by_hand(bend, n, turn) + 0.5 * dt * w;
         const bool yields = p.rolling_stiffness * now.norm() > yield;
         if (yields) now = yield / p.rolling_stiffness * now.normalized();
         couple = -p.rolling_stiffness * now;

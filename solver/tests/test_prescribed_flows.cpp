@@ -91,3 +91,17 @@ TEST(PrescribedPorosity, BadTables) {
     EXPECT_THROW(porosity("law = 'uniform'\nvalue = 1.1"), InputError);
     EXPECT_THROW(porosity("law = 'linear'\naxis = 'y'\nlower = 0.4"), InputError);
 }
+
+// The bound of the speed that the step limit reckons with: never exceeded, and reached.
+TEST(PrescribedFlows, FastestSpeedIsTheBoundOfTheBox) {
+    const Vec3 size(2.0, 3.0, 4.0);
+    for (const std::string_view text : every_flow) {
+        const PrescribedFlow law = flow(text);
+        double fastest = 0.0;
+        for (int a = 0; a <= 20; ++a)
+            for (int c = 0; c <= 20; ++c)
+                for (int q = 0; q <= 40; ++q)
+                    fastest = std::max(fastest, flow_at(law, Vec3(0.1 * a, 0.0, 0.2 * c), 0.01 * q).u.norm());
+        EXPECT_NEAR(fastest_speed(law, size), fastest, 1e-12) << text;
+    }
+}

@@ -182,7 +182,8 @@ TEST(ContactEnergy, IsTheIntegralOfTheForce) {
                     double work = 0.0; // midpoint rule
                     for (int k = 0; k < n; ++k) {
                         Space<double> stretch{0, 0, 0};
-                        const Contact<double> c{depth * (k + 0.5) / n, {1, 0, 0}, {0, 0, 0}, 1.0, inverse_radius, 0.0};
+                        const Contact<double> c{depth * (k + 0.5) / n, {1, 0, 0}, {0, 0, 0}, 1.0,
+                                                inverse_radius,        0.0,       {0, 0, 0}};
                         work += Law::force(c, l.parameters, stretch).normal * depth / n;
                     }
                     EXPECT_NEAR(elastic_energy(one, depth, inverse_radius, 0.0) / work, 1.0, 1e-5) << Law::name;

@@ -12,7 +12,7 @@ constexpr double radius = 5e-4, normal_force = 0.2, inertia = 4e-13;
 constexpr double stiffness = 1e-2, limit = 0.1 * radius * normal_force; // of the laws below
 
 Rolling<double> rolling(const Space<double>& rotation, double dt) {
-    return {{0, 0, 1}, rotation, normal_force, radius, 1.0 / inertia, dt};
+    return {{0, 0, 1}, rotation, normal_force, radius, 1.0 / inertia, dt, {0, 0, 0}};
 }
 double norm(const Space<double>& a) { return std::sqrt(dot(a, a)); }
 
@@ -124,7 +124,8 @@ TEST(RollingLaws, LanesAgreeWithTheScalarLaw) {
     const ElasticPlastic law = elastic_plastic();
     const auto p = [](double x) { return broadcast<Pack>(x); };
     for (int repeat = 0; repeat < 200; ++repeat) {
-        Rolling<Pack> packed{{p(0), p(0), p(1)}, {}, p(normal_force), p(radius), p(1.0 / inertia), p(1e-6)};
+        Rolling<Pack> packed{{p(0), p(0), p(1)}, {},      p(normal_force),   p(radius),
+                             p(1.0 / inertia),   p(1e-6), {p(0), p(0), p(0)}};
         Space<Pack> bend{};
         Rolling<double> one[8];
         Space<double> own[8];

@@ -54,6 +54,29 @@ TEST(StableStep, AutomaticStepDividesTheInterval) {
     }
 }
 
+// Probes may have intervals of their own: the automatic step divides them too, and is no shorter than that needs.
+TEST(StableStep, AutomaticStepDividesTheProbesIntervals) {
+    const auto timed = [](double output, const std::vector<double>& intervals, double bound) {
+        Table time = table_of(fmt::format("end = {}\noutput_interval = {}\nstep = \"auto\"", output, output), "time");
+        return timing(time, {limit("contact", bound)}, intervals);
+    };
+    EXPECT_EQ(timed(0.1, {0.03}, 0.007).steps_per_output, 20);       // common interval 0.01, two steps of it
+    EXPECT_EQ(timed(0.1, {0.03, 0.0025}, 1.0).steps_per_output, 40); // common interval 0.0025
+    EXPECT_EQ(timed(0.1, {0.03, 0.0025}, 1.0).ruling, "probe_interval");
+    EXPECT_EQ(timed(0.1, {0.2, 0.5}, 1.0).steps_per_output, 1); // longer ones
+    EXPECT_EQ(timed(1.0, {1.0 / 3.0, 1.0 / 7.0}, 1.0).steps_per_output, 21);
+    Random random(3);
+    for (int k = 0; k < 1000; ++k) {
+        const double unit = random.uniform(1e-4, 1e-3), bound = std::pow(10.0, random.uniform(-6.0, -3.0));
+        const double output = unit * std::floor(random.uniform(1.0, 50.0)),
+                     probe = unit * std::floor(random.uniform(1.0, 50.0));
+        const Timing t = timed(output, {probe}, bound);
+        ASSERT_LE(t.dt, bound * (1.0 + 1e-9));
+        ASSERT_NEAR(probe / t.dt, std::nearbyint(probe / t.dt), 1e-9 * probe / t.dt);
+    }
+    expect_error([&] { timed(0.1, {0.1 / std::numbers::sqrt2}, 1e-3); }, {"time.step", "0.1 s", "probe interval"});
+}
+
 // A limit that divides the interval exactly must not cost one step more through rounding.
 TEST(StableStep, ALimitThatDividesIsTaken) {
     for (const int n : {1, 3, 7, 10, 1000, 12345}) {
@@ -182,6 +205,14 @@ TEST(StableStep, HertzianLimitFollowsTheSpeed) {
     GrainSystem falling = s;
     falling.domain.gravity = Vec3(0, 0, -9.81);
     EXPECT_NEAR(contact_limit(falling) / contact_limit(s), std::pow(1.0 + std::sqrt(2.0 * 9.81), -0.2), 1e-9);
+}
+
+// A fluid can carry grains into each other faster than they fall.
+TEST(StableStep, HertzianLimitFollowsTheFluid) {
+    GrainSystem s = system_of(box(Vec3::Constant(1.0)), hertz);
+    add(s, 1e-3, Vec3(0.2, 0.5, 0.5));
+    const double slow = grain_limits(s, 1.0).front().seconds, fast = grain_limits(s, 32.0).front().seconds;
+    EXPECT_NEAR(fast / slow, 0.5, 1e-9); // t_c ~ v^(-1/5)
 }
 
 // Grains at rest without gravity still have stiff contacts: overlapping ones, or some that a fluid drives together. No

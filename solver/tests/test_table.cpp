@@ -39,6 +39,14 @@ TEST(Table, ReadsEveryKindOfValue) {
     EXPECT_NO_THROW(t.finish());
 }
 
+// Tables that are looked at in two places: a key read in either counts, one read in neither is still found.
+TEST(Table, TablesTakenTwiceShareWhatWasRead) {
+    Table t = table_of("[[probe]]\nname = \"a\"\ninterval = 2.0\n[[probe]]\nname = \"b\"\nwrong = 1\n");
+    EXPECT_EQ(t.tables("probe")[0].number("interval"), 2.0);
+    for (Table& probe : t.tables("probe")) probe.text("name");
+    expect_error([&] { t.finish(); }, {"probe[1].wrong"});
+}
+
 // A default that replaces a given value, or a default that is range-checked as if it were given.
 TEST(Table, DefaultsApplyOnlyToAbsentKeys) {
     Table t = table_of("given = 0.5\nword = \"x\"");
