@@ -17,6 +17,7 @@ RATIO = 0.8           # k_t/k of the linear spring
 RESONANT_RATIO = 2 / 7
 RESTITUTION = 0.7     # of the damped variants
 POISSON = 0.3
+YOUNG = 1e11          # Pa
 SPEED = 1e-3          # normal, m/s
 END = 5e-5            # s
 SPIN = np.array([1.0, -1.5, 2.0])  # of the spinning variant, rad/s
@@ -130,6 +131,12 @@ def normal_motion(law, restitution):
     return t, overlap, rate, overlap + 2 * beta * rate, 2 * beta + 0 * t
 
 
+def hertz_depth():
+    """Unit of the overlap over R: (m v_n^2/k_h)^(2/5)/R with m = 4/3 pi rho R^3 and k_h = 4/3 E* R^(1/2)."""
+    modulus = YOUNG / (2 * (1 - POISSON**2))  # two bodies of one material
+    return (np.pi * DENSITY * SPEED**2 / modulus) ** 0.4
+
+
 def rebound(law, ratio, restitution, psi):
     """Slip after the impact over mu v_n for slips psi [n] before it: the equations of the README, solved by the
     trapezoidal rule with the force returned to Coulomb's limit, STEPS steps (second order)."""
@@ -137,29 +144,34 @@ def rebound(law, ratio, restitution, psi):
         return np.maximum(psi - SURFACE * (1 + 1.0), 0.0)
     t, overlap, rate, normal, dashpot = normal_motion(law, restitution)
     hertz = law == "hertz_mindlin"
+    arm = 1 - hertz_depth() * overlap if hertz else np.ones_like(t)  # of the contact point over R
     spring = ratio * np.sqrt(overlap) if hertz else np.full_like(t, ratio)
     loading = rate >= 0
     dashpot = dashpot * np.sqrt(ratio / 1.5) if hertz else np.zeros_like(t)  # c_t = c_n sqrt(k_t/k_n); none if linear
     slip, elastic = psi.copy(), np.zeros_like(psi)
+    centre, spin = psi.copy(), np.zeros_like(psi)  # velocity of the centre, R omega; slip = centre + arm spin
     force = np.minimum(dashpot[0] * slip, max(normal[0], 0.0))
     for k in range(0, 2 * STEPS, 2):
         # Loading: the force grows by spring ds. Unloading: the force is spring times the stretch, so it shrinks with it.
         grows = loading[k + 1] or not hertz
         kept = 1.0 if grows else np.sqrt(overlap[k + 2] / overlap[k])
         # elastic' = kept elastic + h/2 spring (slip + slip'), slip' = slip - h/2 SURFACE (force + force'),
-        # force' = elastic' + dashpot slip': linear, solved for slip'
+        # force' = elastic' + dashpot slip': linear, solved for slip'. SURFACE is 1 + 5/2 arm^2 in full.
         h = t[k + 2] - t[k]
         pull = 0.5 * h * spring[k + 1 if grows else k + 2]
-        weight = 0.5 * h * SURFACE
-        after = (slip - weight * (force + kept * elastic + pull * slip)) / (1 + weight * (pull + dashpot[k + 2]))
+        old, new = 0.5 * h * (1 + 2.5 * arm[k] * arm[k + 2]), 0.5 * h * (1 + 2.5 * arm[k + 2] ** 2)
+        free = centre + arm[k + 2] * spin - old * force
+        after = (free - new * (kept * elastic + pull * slip)) / (1 + new * (pull + dashpot[k + 2]))
         stretched = kept * elastic + pull * (slip + after)
         limit = max(normal[k + 2], 0.0)
         new_force = np.clip(stretched + dashpot[k + 2] * after, -limit, limit)
-        after = slip - weight * (force + new_force)
+        after = free - new * new_force
+        centre -= 0.5 * h * (force + new_force)
+        spin -= 0.5 * h * 2.5 * (arm[k] * force + arm[k + 2] * new_force)
         slides = np.abs(stretched + dashpot[k + 2] * after) > limit
         elastic = np.where(slides, new_force - dashpot[k + 2] * after, stretched)
         slip, force = after, new_force
-    return slip
+    return centre + spin
 
 
 def case_of(scene):
