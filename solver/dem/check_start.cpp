@@ -102,6 +102,7 @@ void check_pairs(const Start& start, const std::vector<bool>& may_overlap, const
 void check_start(const Grains& grains, const std::vector<GrainGroup>& groups, std::vector<Table>& tables,
                  const Domain& domain, const std::vector<WallBody>& walls, const PairTouches& pair_touches) {
     std::vector<bool> may_overlap;
+    may_overlap.reserve(tables.size());
     for (Table& table : tables)
         may_overlap.push_back(table.has("overlap") && table.choice("overlap", {"allow", "forbid"}) == "allow");
     const Start start{grains, groups, tables, domain};

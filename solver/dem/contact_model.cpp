@@ -15,6 +15,8 @@ namespace {
 
 /// Bitwise equality of two laws of one type: their parameters are plain numbers.
 template <class Law> bool same(const Law& a, const Law& b) {
+    // Different bits of equal numbers (0 and -0) only cost the shorter way.
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
     return std::memcmp(&a.parameters, &b.parameters, sizeof a.parameters) == 0;
 }
 
@@ -56,7 +58,7 @@ MaterialContact read_contact(Table table) {
     const bool frictional = std::visit([](const auto& law) { return law.parameters.friction > 0.0; }, contact);
     RollingLaw rolling = NoRolling{};
     if (frictional || table.has("rolling")) rolling = make_family<RollingLaw>(table.law("rolling"));
-    return {std::move(contact), std::move(rolling)};
+    return {contact, rolling};
 }
 
 ContactModel contact_model(const std::vector<std::string>& names,

@@ -16,7 +16,9 @@ template <class Law> struct PairLaws {
     std::int32_t materials = 0;
     std::vector<Law> laws;
     bool uniform = true;
-    const Law& of(std::int32_t a, std::int32_t b) const { return laws[static_cast<std::size_t>(a * materials + b)]; }
+    const Law& of(std::int32_t a, std::int32_t b) const {
+        return laws[static_cast<std::size_t>(a) * static_cast<std::size_t>(materials) + static_cast<std::size_t>(b)];
+    }
 };
 
 namespace detail {

@@ -94,7 +94,8 @@ void collect(const Cells& cells, const Domain& domain, std::int32_t cell, std::v
                 const auto& [z, dz] = zs.cell[static_cast<std::size_t>(a)];
                 const auto& [y, dy] = ys.cell[static_cast<std::size_t>(b)];
                 const auto& [x, dx] = xs.cell[static_cast<std::size_t>(c)];
-                const auto at = static_cast<std::size_t>((z * cells.n[1] + y) * cells.n[0] + x);
+                const std::int32_t index = (z * cells.n[1] + y) * cells.n[0] + x; // there are few cells per grain
+                const auto at = static_cast<std::size_t>(index);
                 if (cells.begin[at + 1] > cells.begin[static_cast<std::size_t>(cell)]) // only j > i is wanted
                     ranges.push_back({cells.begin[at], cells.begin[at + 1], Vec3(dx, dy, dz)});
             }

@@ -144,8 +144,9 @@ Comparison difference(const std::string& a, const std::string& b) {
     std::size_t compared = 0;
     for (const std::string& name : names) {
         if (auto missing = presence_difference(a, b, name)) return {false, *missing};
-        if (!fs::exists(a + "/" + name)) continue;
-        const Pair files{name, Hdf5Reader(a + "/" + name), Hdf5Reader(b + "/" + name)};
+        const std::string first = fmt::format("{}/{}", a, name), second = fmt::format("{}/{}", b, name);
+        if (!fs::exists(first)) continue;
+        const Pair files{name, Hdf5Reader(first), Hdf5Reader(second)};
         const auto found = name == "series.h5" ? series_difference(files) : state_difference(files);
         if (found) return {false, found->text};
         ++compared;

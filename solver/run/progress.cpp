@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <unistd.h>
 
@@ -19,7 +20,7 @@ double since(std::chrono::steady_clock::time_point t) {
 
 /// "1:02:03" or "2:03".
 std::string clock_text(double seconds) {
-    const auto whole = static_cast<std::int64_t>(std::min(seconds, 3.6e9) + 0.5);
+    const auto whole = static_cast<std::int64_t>(std::llround(std::min(seconds, 3.6e9)));
     if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
     return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
