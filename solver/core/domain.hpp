@@ -13,6 +13,7 @@ struct Domain {
     Vec3 size = Vec3::Zero(); // [m]
     std::array<bool, 3> periodic{};
     Vec3 gravity = Vec3::Zero(); // [m/s2]
+    int dimensions = 3;          // 2: size, gravity and positions have no z
 
     /// Shortest vector equivalent to the difference dx of two positions.
     Vec3 minimum_image(Vec3 dx) const {

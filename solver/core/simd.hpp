@@ -40,8 +40,15 @@ inline Pack square_root(Pack x) {
 inline double select(bool m, double a, double b) { return m ? a : b; }
 inline Pack select(PackMask m, Pack a, Pack b) { return m ? a : b; }
 
-template <class T> inline T larger(T a, T b) { return select(a > b, a, b); }
-template <class T> inline T smaller(T a, T b) { return select(a < b, a, b); }
+inline double larger(double a, double b) { return a > b ? a : b; }
+inline double smaller(double a, double b) { return a < b ? a : b; }
+#ifdef __AVX512F__ // one instruction with the very meaning of the comparison; the compiler makes two
+inline Pack larger(Pack a, Pack b) { return _mm512_maskz_max_pd(0xff, a, b); }
+inline Pack smaller(Pack a, Pack b) { return _mm512_maskz_min_pd(0xff, a, b); }
+#else
+inline Pack larger(Pack a, Pack b) { return a > b ? a : b; }
+inline Pack smaller(Pack a, Pack b) { return a < b ? a : b; }
+#endif
 
 inline bool any(bool m) { return m; }
 inline bool any(PackMask m) {

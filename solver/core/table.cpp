@@ -129,19 +129,32 @@ std::vector<std::string> Table::texts(std::string_view key) {
     return values;
 }
 
-Vec3 Table::vector(std::string_view key, const Range& range) {
-    const toml::array* array = required(key, "three numbers [x, y, z]").as_array();
-    if (array == nullptr || array->size() != 3) fail(key, "expected three numbers [x, y, z]");
-    Vec3 value;
-    for (std::size_t c = 0; c < 3; ++c) value[static_cast<Eigen::Index>(c)] = checked(key, *array->get(c), range);
+Vec3 Table::vector(std::string_view key, const Range& range) { return components(key, 3, range); }
+
+Vec3 Table::components(std::string_view key, int dimensions, const Range& range) {
+    const auto n = static_cast<std::size_t>(dimensions);
+    const std::string_view expected = n == 3 ? "three numbers [x, y, z]" : "two numbers [x, y]";
+    const toml::array* array = required(key, expected).as_array();
+    if (array == nullptr || array->size() != n) fail(key, fmt::format("expected {}", expected));
+    Vec3 value = Vec3::Zero();
+    for (std::size_t c = 0; c < n; ++c) value[static_cast<Eigen::Index>(c)] = checked(key, *array->get(c), range);
     return value;
 }
 
-std::array<bool, 3> Table::flags(std::string_view key) {
-    const toml::array* array = required(key, "three of true or false").as_array();
-    if (array == nullptr || array->size() != 3) fail(key, "expected three of true or false");
+std::size_t Table::length(std::string_view key) const {
+    const toml::array* array = has(key) ? table_->get(key)->as_array() : nullptr;
+    return array == nullptr ? 0 : array->size();
+}
+
+std::array<bool, 3> Table::flags(std::string_view key) { return component_flags(key, 3); }
+
+std::array<bool, 3> Table::component_flags(std::string_view key, int dimensions) {
+    const auto n = static_cast<std::size_t>(dimensions);
+    const std::string_view expected = n == 3 ? "three of true or false" : "two of true or false";
+    const toml::array* array = required(key, expected).as_array();
+    if (array == nullptr || array->size() != n) fail(key, fmt::format("expected {}", expected));
     std::array<bool, 3> value{};
-    for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < n; ++c) {
         const toml::node& node = *array->get(c);
         if (!node.is_boolean()) fail(key, fmt::format("{} is not true or false", shown(node)));
         value[c] = *node.value<bool>();

@@ -54,6 +54,11 @@ public:
     std::vector<std::string> texts(std::string_view key);
     Vec3 vector(std::string_view key, const Range& range = any_number);
     std::array<bool, 3> flags(std::string_view key);
+    /// Two or three numbers, or flags, as the scene has dimensions; the third is 0 (false) in the plane.
+    Vec3 components(std::string_view key, int dimensions, const Range& range = any_number);
+    std::array<bool, 3> component_flags(std::string_view key, int dimensions);
+    /// Entries of the array at `key`; 0 when it is no array. Does not mark it as read.
+    std::size_t length(std::string_view key) const;
     std::vector<Vec3> points(std::string_view key);
     /// The sub-table at `key`; missing or of another type is an error. Taken twice, both remember what either read.
     Table table(std::string_view key);

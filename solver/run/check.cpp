@@ -20,7 +20,9 @@ using Json = nlohmann::ordered_json;
 // solver/benchmarks.
 constexpr double contact_rate = 2e7; // grain steps per second with contacts
 constexpr double fluid_rate = 2e6;   // with a fluid: drag law and step weights of every grain
-constexpr double step_cost = 2e-6;   // fixed cost of a step [s]
+constexpr double particle_rate = 4e6, particle_rate_plane = 1e7; // particle updates of smoothed particles
+constexpr double bytes_per_particle = 450.0;
+constexpr double step_cost = 2e-6; // fixed cost of a step [s]
 
 // Memory [bytes]: what the fields and lists of the engine take, with six neighbours per grain in the list.
 constexpr double bytes_per_grain = 500.0, bytes_per_pair = 150.0, pairs_per_grain = 6.0, bytes_of_program = 2e7;
@@ -78,6 +80,7 @@ Json step_part(const Simulation& s) {
     part["steps"] = total_steps(t);
     part["steps_per_output"] = t.steps_per_output;
     part["outputs"] = t.outputs + 1;
+    if (s.sph) return part;
     part["contact_law"] = std::visit([](const auto& pairs) { return law_name(ContactLaw(pairs.laws.front())); },
                                      s.grains.contact.contact);
     part["contact_times"] = contact_times_part(s.grains);
@@ -101,7 +104,39 @@ Json fluid_part(const Simulation& s) {
     return part;
 }
 
+/// Numbers of the smoothed particles. The speed is the greatest at the start.
+Json sph_part(const Simulation& s) {
+    const SphFluid& f = *s.sph;
+    double fastest = 0.0;
+    for (std::size_t k = 0; k < f.slots(); ++k)
+        fastest = std::max(fastest, std::hypot(f.v[0][k], f.v[1][k], f.dimensions == 3 ? f.v[2][k] : 0.0));
+    const double nu = f.viscosity / f.density, none = std::numeric_limits<double>::infinity();
+    return {
+        {"particles", particle_count(f)},
+        {"dimensions", f.dimensions},
+        {"kernel", law_name(f.kernel)},
+        {"h", f.h},
+        {"sound_speed", f.sound_speed},
+        {"speed", fastest},
+        {"Mach", fastest / f.sound_speed},
+        {"Re_per_m", nu > 0.0 ? fastest / nu : none},
+        {"acoustic_Re", nu > 0.0 ? f.h * f.sound_speed / nu : none},
+        {"artificial_nu_over_nu", nu > 0.0 ? f.extras.artificial * f.mass / (2.0 * (f.dimensions + 2)) / nu : none}};
+}
+
+Json sph_cost_part(const Run& run) {
+    const Simulation& s = run.simulation;
+    const double n = static_cast<double>(particle_count(*s.sph)), steps = static_cast<double>(total_steps(s.timing));
+    const double rate = s.sph->dimensions == 2 ? particle_rate_plane : particle_rate;
+    return {{"grain_steps", n * steps},
+            {"memory_bytes", bytes_of_program + bytes_per_particle * n},
+            {"wall_s", steps * (step_cost + n / (rate * thread_count()))},
+            {"nominal_rate", rate},
+            {"threads", thread_count()}};
+}
+
 Json cost_part(const Run& run) {
+    if (run.simulation.sph) return sph_cost_part(run);
     const Simulation& s = run.simulation;
     const double n = most_grains(s), steps = static_cast<double>(total_steps(s.timing));
     const double pairs = contactless(s.grains.contact) ? 0.0 : pairs_per_grain * n;
@@ -125,9 +160,10 @@ Json remarks_part(const std::vector<Remark>& remarks) {
 
 Json report(const Run& run) {
     Json all{{"scene", run.scene.path}, {"scene_hash", run.scene.hash}};
-    all["grains"] = grains_part(run.simulation);
+    if (!run.simulation.sph) all["grains"] = grains_part(run.simulation);
     all["time"] = step_part(run.simulation);
     if (run.simulation.fluid) all["fluid"] = fluid_part(run.simulation);
+    if (run.simulation.sph) all["sph"] = sph_part(run.simulation);
     all["probes"] = run.probes.size();
     all["cost"] = cost_part(run);
     all["missing"] = remarks_part(missing_models(run.simulation));
@@ -162,6 +198,7 @@ void print_time(const Json& part, std::string& text) {
                         part["outputs"].get<std::int64_t>());
     for (const auto& [name, limit] : part["limits"].items())
         text += fmt::format("  {:<14}{} ({})\n", name, seconds(limit["seconds"]), limit["formula"].get<std::string>());
+    if (!part.contains("contact_law")) return;
     text += fmt::format("contact law     {}\n", part["contact_law"].get<std::string>());
     for (const Json& t : part["contact_times"]) {
         if (!std::isfinite(t["seconds"].get<double>())) continue; // these pass through each other
@@ -184,6 +221,17 @@ void print_fluid(const Json& part, std::string& text) {
             g["St_flow"].get<double>(), g["Ga"].get<double>(), g["density_ratio"].get<double>());
 }
 
+void print_sph(const Json& part, std::string& text) {
+    const auto number = [&](const char* name) { return part[name].get<double>(); };
+    text +=
+        fmt::format("fluid           {} particles in {} dimensions, kernel {}, h = {:.4g} m, c = {:.4g} m/s\n"
+                    "  at the start  speed {:.4g} m/s, Mach {:.3g}, Re/length {:.4g} 1/m, h c/nu {:.4g}, artificial "
+                    "viscosity/nu {:.3g}\n",
+                    part["particles"].get<std::int64_t>(), part["dimensions"].get<int>(),
+                    part["kernel"].get<std::string>(), number("h"), number("sound_speed"), number("speed"),
+                    number("Mach"), number("Re_per_m"), number("acoustic_Re"), number("artificial_nu_over_nu"));
+}
+
 void print_remarks(const Json& part, std::string_view title, std::string& text) {
     text += fmt::format("{:<16}{}\n", title, part.empty() ? "none" : "");
     for (const Json& r : part)
@@ -196,12 +244,13 @@ std::string check_report(const Run& run, bool json) {
     const Json all = report(run);
     if (json) return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     std::string text = fmt::format("scene           {} ({})\n", run.scene.path, run.scene.hash);
-    print_grains(all["grains"], text);
+    if (all.contains("grains")) print_grains(all["grains"], text);
+    if (all.contains("sph")) print_sph(all["sph"], text);
     print_time(all["time"], text);
     if (all.contains("fluid")) print_fluid(all["fluid"], text);
     const Json& cost = all["cost"];
     text += fmt::format(
-        "cost            about {:.3g} grain steps, {:.3g} MB, {:.3g} s at a nominal {:.2g} grain-steps/s a thread\n",
+        "cost            about {:.3g} updates, {:.3g} MB, {:.3g} s at a nominal {:.2g} updates/s a thread\n",
         cost["grain_steps"].get<double>(), 1e-6 * cost["memory_bytes"].get<double>(), cost["wall_s"].get<double>(),
         cost["nominal_rate"].get<double>());
     print_remarks(all["missing"], "could matter", text);

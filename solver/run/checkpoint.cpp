@@ -13,7 +13,7 @@ namespace plumb {
 
 namespace {
 
-constexpr std::int64_t format_version = 1; // to be raised with every change of the layout or of what it means
+constexpr std::int64_t format_version = 2; // to be raised with every change of the layout or of what it means
 constexpr const char* format_name = "plumb checkpoint";
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "fields of vectors are written as they lie in memory");
@@ -60,6 +60,27 @@ void write_fluid(Hdf5Writer& file, const FluidOnGrains& fluid) {
     file.write("fluid/range_use", std::vector<std::int64_t>{fluid.range_use.inside, fluid.range_use.outside});
 }
 
+/// Fields of the smoothed particles in the order of ids; `visit` takes a name and the field.
+template <class Fluid, class Visit> void for_each_fluid_field(Fluid& f, Visit&& visit) {
+    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {
+        visit(fmt::format("sph/x_{}", axis_names[c]), f.x[c]);
+        visit(fmt::format("sph/v_{}", axis_names[c]), f.v[c]);
+        visit(fmt::format("sph/a_{}", axis_names[c]), f.a[c]);
+        visit(fmt::format("sph/x_listed_{}", axis_names[c]), f.x_listed[c]);
+    }
+    visit("sph/rho", f.rho);
+    visit("sph/drho", f.drho);
+}
+
+void write_sph(Hdf5Writer& file, const SphFluid& f) {
+    const std::vector<std::int32_t> slot = slots_of_ids(f);
+    for_each_fluid_field(f, [&](const std::string& name, const Field<double>& field) {
+        std::vector<double> values(slot.size());
+        for (std::size_t k = 0; k < slot.size(); ++k) values[k] = field[static_cast<std::size_t>(slot[k])];
+        file.write(name, values);
+    });
+}
+
 void write_outputs(Hdf5Writer& file, const Run& run) {
     for (const Probe& probe : run.probes) {
         file.write("series/" + probe.name + "/time", probe.time);
@@ -67,11 +88,14 @@ void write_outputs(Hdf5Writer& file, const Run& run) {
     }
     std::vector<std::int64_t> grains;
     std::vector<double> times;
+    std::vector<std::int64_t> particles;
     for (const SnapshotEntry& s : run.snapshots) {
         grains.push_back(static_cast<std::int64_t>(s.grains));
+        particles.push_back(static_cast<std::int64_t>(s.particles));
         times.push_back(s.time);
     }
     file.write("snapshots/grains", grains);
+    file.write("snapshots/particles", particles);
     file.write("snapshots/time", times);
 }
 
@@ -126,6 +150,7 @@ private:
     std::vector<RememberedContact> pairs(std::size_t n) const;
     std::vector<WallContact> walls(std::size_t n, std::size_t walls) const;
     void load_fluid(FluidOnGrains& fluid, std::size_t n) const;
+    void load_sph(SphFluid& fluid) const;
     void load_outputs(Run& run, const nlohmann::json& saved) const;
 
     Hdf5Reader file_;
@@ -205,6 +230,17 @@ void Loader::load_fluid(FluidOnGrains& fluid, std::size_t n) const {
     fluid.range_use.inside = use[0], fluid.range_use.outside = use[1];
 }
 
+void Loader::load_sph(SphFluid& f) const {
+    const std::size_t n = particle_count(f);
+    for_each_fluid_field(f, [&](const std::string& name, Field<double>& field) {
+        const std::vector<double> values = doubles(name, n);
+        field.assign(values.begin(), values.end());
+    });
+    f.id.resize(n);
+    for (std::size_t k = 0; k < n; ++k) f.id[k] = static_cast<std::int32_t>(k);
+    restore_lists(f);
+}
+
 void Loader::load_outputs(Run& run, const nlohmann::json& saved) const {
     for (Probe& probe : run.probes) {
         probe.time = file_.doubles("series/" + probe.name + "/time");
@@ -212,11 +248,13 @@ void Loader::load_outputs(Run& run, const nlohmann::json& saved) const {
     }
     const std::vector<std::int64_t> grains = file_.integers("snapshots/grains");
     const std::vector<double> times = doubles("snapshots/time", grains.size());
+    const std::vector<std::int64_t> particles = integers("snapshots/particles", grains.size());
     if (grains.empty()) return;
     const auto& names = saved.at("snapshots");
     demand(names.size() == grains.size(), "snapshots");
     for (std::size_t k = 0; k < grains.size(); ++k)
-        run.snapshots.push_back({names.at(k).get<std::string>(), times[k], static_cast<std::size_t>(grains[k])});
+        run.snapshots.push_back({names.at(k).get<std::string>(), times[k], static_cast<std::size_t>(grains[k]),
+                                 static_cast<std::size_t>(particles[k])});
 }
 
 Run Loader::load() {
@@ -240,7 +278,10 @@ Run Loader::load() {
     system.step = file_.integer("/", "step");
     system.time = static_cast<double>(system.step) * dt;
     system.listed_time = file_.number("/", "listed_time");
-    load_grains(system);
+    if (run.simulation.sph)
+        load_sph(*run.simulation.sph);
+    else
+        load_grains(system);
     if (run.simulation.fluid) load_fluid(*run.simulation.fluid, system.grains.size());
     load_outputs(run, saved);
     run.begun = true;
@@ -265,6 +306,7 @@ void save_checkpoint(const std::string& path, const Run& run, const Cost& cost) 
     for (std::size_t q = 0; q < system.injected.size(); ++q)
         file.write(fmt::format("injectors/{}", q), system.injected[q].count);
     if (run.simulation.fluid) write_fluid(file, *run.simulation.fluid);
+    if (run.simulation.sph) write_sph(file, *run.simulation.sph);
     write_outputs(file, run);
     write_provenance(file, run, cost);
     file.finish();

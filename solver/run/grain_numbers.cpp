@@ -168,7 +168,7 @@ std::vector<Remark> missing_models(const Simulation& simulation) {
 std::vector<Remark> idle_models(const Simulation& simulation) {
     std::vector<Remark> remarks;
     if (simulation.fluid) remark_on_idle_forces(*simulation.fluid, simulation.grains.domain, remarks);
-    remark_on_idle_contacts(simulation.grains, remarks);
+    if (!simulation.sph) remark_on_idle_contacts(simulation.grains, remarks);
     return remarks;
 }
 

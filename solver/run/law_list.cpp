@@ -2,6 +2,7 @@
 
 #include "dem/arrange.hpp"
 #include "run/probes.hpp"
+#include "sph/initial_fields.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,10 @@ namespace plumb {
 
 std::vector<LawFamily> law_families() {
     std::vector<LawFamily> families{{"fluid.flow", law_entries<PrescribedFlow>()},
+                                    {"fluid.kernel", law_entries<Kernel>()},
+                                    {"fluid.equation_of_state", law_entries<EquationOfState>()},
+                                    {"fluid.viscous_term", law_entries<ViscousTerm>()},
+                                    {"fluid.initial", law_entries<InitialField>()},
                                     {"grains.diameter", law_entries<DiameterLaw>()},
                                     {"grains.velocity", law_entries<VelocityLaw>()},
                                     {"grains.arrange", law_entries<Arrangement>()},

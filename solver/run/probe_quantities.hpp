@@ -7,6 +7,7 @@
 #pragma once
 
 #include "core/laws.hpp"
+#include "run/fluid_probes.hpp"
 #include "run/sample.hpp"
 
 #include <optional>
@@ -271,6 +272,7 @@ using ProbeQuantity =
     std::variant<GrainPosition, GrainVelocity, GrainAngularVelocity, GrainForce, GrainMeanPosition, GrainMeanVelocity,
                  GrainKineticEnergy, GrainContactEnergy, GrainPotentialEnergy, GrainTotalEnergy, GrainMomentum,
                  GrainAngularMomentum, GranularTemperature, GrainCount, ContactCount, CoordinationNumber, MaxOverlap,
-                 WallForce, PackingFraction, GrainFluidForce, GrainDragForce, GrainVelocities, GrainAngularVelocities>;
+                 WallForce, PackingFraction, GrainFluidForce, GrainDragForce, GrainVelocities, GrainAngularVelocities,
+                 FluidKineticEnergy, FluidMeanVelocity, FluidGreatestSpeed, FluidVelocityWave>;
 
 } // namespace plumb

@@ -65,28 +65,81 @@ template <class T> std::vector<T> in_id_order(const std::vector<T>& field, const
     return values;
 }
 
-std::string data_item(const SnapshotEntry& s, std::string_view field, std::size_t width, bool integer) {
-    const std::string shape = width == 1 ? fmt::format("{}", s.grains) : fmt::format("{} {}", s.grains, width);
+void write_grains(Hdf5Writer& file, const Grains& g) {
+    const std::vector<std::int32_t> place = positions_of_ids(g);
+    std::vector<double> diameter = in_id_order(g.radius, place);
+    for (double& d : diameter) d *= 2.0;
+    const Shape vectors{g.size(), 3};
+    file.write("grains/x", in_id_order(g.x, place), vectors);
+    file.write("grains/v", in_id_order(g.v, place), vectors);
+    file.write("grains/omega", in_id_order(g.omega, place), vectors);
+    file.write("grains/diameter", diameter);
+    file.write("grains/id", in_id_order(g.id, place));
+    file.write("grains/group", in_id_order(g.group, place));
+    for (const auto& [name, units] :
+         {std::pair{"x", "m"}, {"v", "m/s"}, {"omega", "rad/s"}, {"diameter", "m"}, {"id", "1"}, {"group", "1"}})
+        file.attribute(fmt::format("grains/{}", name), "units", std::string(units));
+}
+
+/// Particles in the order of ids; vectors have three components, the third 0 in the plane.
+void write_fluid(Hdf5Writer& file, const SphFluid& f) {
+    const std::vector<std::int32_t> slot = slots_of_ids(f);
+    const std::size_t n = slot.size();
+    std::vector<double> x(3 * n), v(3 * n), rho(n), p(n);
+    std::vector<std::int32_t> id(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        const auto s = static_cast<std::size_t>(slot[k]);
+        for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {
+            x[3 * k + c] = f.x[c][s];
+            v[3 * k + c] = f.v[c][s];
+        }
+        rho[k] = f.rho[s];
+        p[k] = pressure(f, f.rho[s]);
+        id[k] = static_cast<std::int32_t>(k);
+    }
+    file.write("fluid/x", std::span<const double>(x), {n, 3});
+    file.write("fluid/v", std::span<const double>(v), {n, 3});
+    file.write("fluid/rho", rho);
+    file.write("fluid/p", p);
+    file.write("fluid/id", id);
+    for (const auto& [name, units] : {std::pair{"x", "m"}, {"v", "m/s"}, {"rho", "kg/m3"}, {"p", "Pa"}, {"id", "1"}})
+        file.attribute(fmt::format("fluid/{}", name), "units", std::string(units));
+}
+
+/// What a set of points of a snapshot shows in ParaView.
+struct PointSet {
+    std::string_view name; // group of the file
+    std::size_t count;
+    std::vector<std::string_view> vectors, scalars, integers;
+};
+
+std::string data_item(const SnapshotEntry& s, const PointSet& set, std::string_view field, std::size_t width,
+                      bool integer) {
+    const std::string shape = width == 1 ? fmt::format("{}", set.count) : fmt::format("{} {}", set.count, width);
     const std::string_view type = integer ? R"(NumberType="Int" Precision="4")" : R"(NumberType="Float" Precision="8")";
-    return fmt::format("<DataItem Dimensions=\"{}\" {} Format=\"HDF\">{}:/grains/{}</DataItem>", shape, type, s.file,
-                       field);
+    return fmt::format("<DataItem Dimensions=\"{}\" {} Format=\"HDF\">{}:/{}/{}</DataItem>", shape, type, s.file,
+                       set.name, field);
 }
 
 /// One snapshot. Its cells are the points themselves; their numbers are the ids, because the rows are in that order
 /// (one of ParaView's two readers makes no cells without them).
-std::string xdmf_grid(const SnapshotEntry& s) {
-    std::string text = fmt::format("      <Grid Name=\"grains\" GridType=\"Uniform\">\n"
-                                   "        <Time Value=\"{:.17g}\"/>\n"
-                                   "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" "
-                                   "NodesPerElement=\"1\">{}</Topology>\n"
-                                   "        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
-                                   s.time, s.grains, data_item(s, "id", 1, true), data_item(s, "x", 3, false));
-    for (const char* name : {"v", "omega"})
-        text += fmt::format("        <Attribute Name=\"{}\" AttributeType=\"Vector\" Center=\"Node\">{}</Attribute>\n",
-                            name, data_item(s, name, 3, false));
-    for (const char* name : {"diameter", "id", "group"})
-        text += fmt::format("        <Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Node\">{}</Attribute>\n",
-                            name, data_item(s, name, 1, std::string_view(name) != "diameter"));
+std::string xdmf_grid(const SnapshotEntry& s, const PointSet& set) {
+    std::string text =
+        fmt::format("      <Grid Name=\"{}\" GridType=\"Uniform\">\n"
+                    "        <Time Value=\"{:.17g}\"/>\n"
+                    "        <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{}\" "
+                    "NodesPerElement=\"1\">{}</Topology>\n"
+                    "        <Geometry GeometryType=\"XYZ\">{}</Geometry>\n",
+                    set.name, s.time, set.count, data_item(s, set, "id", 1, true), data_item(s, set, "x", 3, false));
+    const auto attributes = [&](const std::vector<std::string_view>& names, std::string_view type, std::size_t width,
+                                bool integer) {
+        for (const std::string_view name : names)
+            text += fmt::format("        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"Node\">{}</Attribute>\n",
+                                name, type, data_item(s, set, name, width, integer));
+    };
+    attributes(set.vectors, "Vector", 3, false);
+    attributes(set.scalars, "Scalar", 1, false);
+    attributes(set.integers, "Scalar", 1, true);
     return text + "      </Grid>\n";
 }
 
@@ -155,21 +208,9 @@ void write_series(const std::string& path, const std::vector<Probe>& probes) {
 }
 
 void write_snapshot(const std::string& path, const Simulation& simulation) {
-    const Grains& g = simulation.grains.grains;
-    const std::vector<std::int32_t> place = positions_of_ids(g);
-    std::vector<double> diameter = in_id_order(g.radius, place);
-    for (double& d : diameter) d *= 2.0;
     Hdf5Writer file(path);
-    const Shape vectors{g.size(), 3};
-    file.write("grains/x", in_id_order(g.x, place), vectors);
-    file.write("grains/v", in_id_order(g.v, place), vectors);
-    file.write("grains/omega", in_id_order(g.omega, place), vectors);
-    file.write("grains/diameter", diameter);
-    file.write("grains/id", in_id_order(g.id, place));
-    file.write("grains/group", in_id_order(g.group, place));
-    for (const auto& [name, units] :
-         {std::pair{"x", "m"}, {"v", "m/s"}, {"omega", "rad/s"}, {"diameter", "m"}, {"id", "1"}, {"group", "1"}})
-        file.attribute(fmt::format("grains/{}", name), "units", std::string(units));
+    if (simulation.grains.grains.size() > 0 || !simulation.sph) write_grains(file, simulation.grains.grains);
+    if (simulation.sph) write_fluid(file, *simulation.sph);
     file.attribute("/", "time", static_cast<double>(simulation.grains.step) * simulation.timing.dt);
     file.attribute("/", "time_units", std::string("s"));
     file.attribute("/", "step", simulation.grains.step);
@@ -179,7 +220,9 @@ void write_snapshot(const std::string& path, const Simulation& simulation) {
 void write_xdmf(const std::string& path, const std::vector<SnapshotEntry>& snapshots) {
     std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
                        "    <Grid Name=\"time\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-    for (const SnapshotEntry& s : snapshots) text += xdmf_grid(s);
+    for (const SnapshotEntry& s : snapshots)
+        text += s.particles > 0 ? xdmf_grid(s, {"fluid", s.particles, {"v"}, {"rho", "p"}, {"id"}})
+                                : xdmf_grid(s, {"grains", s.grains, {"v", "omega"}, {"diameter"}, {"id", "group"}});
     text += "    </Grid>\n  </Domain>\n</Xdmf>\n";
     write_text(path, text);
 }

@@ -1,9 +1,9 @@
 // The result folder: which files there are and how they are laid out.
 //
 //   run.json               provenance and cost                 series.h5    /<probe>/time [nt], /<probe>/value [nt] or
-//   [nt, n] snapshots/NNNNNN.h5    /grains/x v omega diameter id group, in the order of ids, one file per output
-//   checkpoint.h5          everything `plumb resume` needs     result.xdmf  index of the snapshots for ParaView and
-//   PyVista
+//   [nt, n] snapshots/NNNNNN.h5    /grains/x v omega diameter id group and /fluid/x v rho p id, each in the order of
+//   ids, where the scene has them; one file per output checkpoint.h5          everything `plumb resume` needs
+//   result.xdmf  index of the snapshots for ParaView and PyVista
 #pragma once
 
 #include "run/probes.hpp"
@@ -45,9 +45,10 @@ private:
 void check_result_folder(const std::string& path);
 
 struct SnapshotEntry {
-    std::string file;   // relative to the result folder
-    double time;        // [s]
-    std::size_t grains; // in it
+    std::string file;          // relative to the result folder
+    double time;               // [s]
+    std::size_t grains;        // in it
+    std::size_t particles = 0; // of the fluid
 };
 
 /// "snapshots/000012.h5".

@@ -87,7 +87,8 @@ private:
         write_snapshot(folder_.file(name), run_.simulation);
         unflushed_.push_back(name);
         run_.snapshots.push_back({name, static_cast<double>(run_.simulation.grains.step) * run_.simulation.timing.dt,
-                                  run_.simulation.grains.grains.size()});
+                                  run_.simulation.grains.grains.size(),
+                                  run_.simulation.sph ? particle_count(*run_.simulation.sph) : 0});
     }
     void write_series_and_index() {
         series_.write([&] {
@@ -124,8 +125,7 @@ public:
             const double begin = wall_time();
             advance(run.simulation, steps);
             const double spent = std::max(wall_time() - begin, 1e-9);
-            const double updates =
-                static_cast<double>(steps) * static_cast<double>(run.simulation.grains.grains.size());
+            const double updates = static_cast<double>(steps) * static_cast<double>(item_count(run.simulation));
             output.count(updates);
             progress.show(run, updates);
             const double affordable = static_cast<double>(steps) * chunk_time / spent;

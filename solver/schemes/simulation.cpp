@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "dem/advance_grains.hpp"
 #include "dem/arrange.hpp"
+#include "schemes/sph_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -14,9 +15,10 @@ namespace {
 
 Domain read_domain(Table table) {
     Domain domain;
-    domain.size = table.vector("size", positive);
-    domain.periodic = table.flags("periodic");
-    domain.gravity = table.vector("gravity");
+    domain.dimensions = table.length("size") == 2 ? 2 : 3;
+    domain.size = table.components("size", domain.dimensions, positive);
+    domain.periodic = table.component_flags("periodic", domain.dimensions);
+    domain.gravity = table.components("gravity", domain.dimensions);
     return domain;
 }
 
@@ -52,7 +54,7 @@ Integrator read_integrator(Table& time) {
 }
 
 void read_grain_system(Table& root, GrainSystem& system) {
-    system.domain = read_domain(root.table("domain"));
+    if (system.domain.dimensions != 3) root.fail("domain", "grains need a box of three dimensions");
     std::vector<Table> wall_tables = root.tables("wall");
     std::vector<Table> grain_tables = root.tables("grains");
     if (grain_tables.empty()) root.fail("grains", "missing; expected one [grains] table or several [[grains]]");
@@ -137,11 +139,42 @@ void advance_one(Simulation& s) {
     complete_fluid_forces(*s.fluid, s.grains, dt);
 }
 
+/// True when the scene asks for smoothed particles; a [fluid] table that does not say is left to its own reader.
+bool is_sph(Table& root) {
+    if (!root.has("fluid") || root.type("fluid") != toml::node_type::table) return false;
+    Table fluid = root.table("fluid");
+    return fluid.has("method") && fluid.choice("method", {"prescribed", "sph"}) == "sph";
+}
+
+/// A scene of smoothed particles alone.
+void make_sph(Table& root, Simulation& s) {
+    for (const char* key : {"grains", "wall", "injector", "contact", "coupling"})
+        if (root.has(key)) root.fail(key, "does not go with fluid.method = \"sph\" yet");
+    Table fluid = root.table("fluid");
+    s.sph = read_sph_fluid(fluid, s.grains.domain);
+    const double least = 2.0 * (s.sph->clusters.reach + s.sph->clusters.skin);
+    for (int c = 0; c < s.sph->dimensions; ++c)
+        if (s.grains.domain.size[c] < least)
+            root.fail("domain.size",
+                      fmt::format("{} m along periodic {} is shorter than twice the reach of the kernel with its "
+                                  "skin, {:.6g} m: particles would meet two images of each other",
+                                  s.grains.domain.size[c], axis_names[static_cast<std::size_t>(c)], least));
+    Table time = root.table("time");
+    time.choice("integrator", {"midpoint"});
+    s.timing = timing(time, fluid_limits(*s.sph), probe_intervals(root));
+    start(*s.sph);
+}
+
 } // namespace
 
 Simulation make_simulation(Scene& scene) {
     Table& root = scene.root;
     Simulation s;
+    s.grains.domain = read_domain(root.table("domain"));
+    if (is_sph(root)) {
+        make_sph(root, s);
+        return s;
+    }
     read_grain_system(root, s.grains);
     if (root.has("fluid")) {
         Table fluid = root.table("fluid");
@@ -166,6 +199,15 @@ Simulation make_simulation(Scene& scene) {
 
 void advance(Simulation& simulation, std::int64_t steps) {
     try {
+        if (simulation.sph) {
+            GrainSystem& clock = simulation.grains;
+            for (std::int64_t k = 0; k < steps; ++k) {
+                advance_fluid(*simulation.sph, simulation.timing.dt, clock.step + 1);
+                ++clock.step;
+                clock.time = simulation.timing.dt * static_cast<double>(clock.step);
+            }
+            return;
+        }
         if (!simulation.fluid && simulation.grains.injectors.empty())
             return advance_grains(simulation.grains, steps, simulation.timing.dt);
         for (std::int64_t k = 0; k < steps; ++k) advance_one(simulation);

@@ -3,6 +3,7 @@
 
 #include "core/scene.hpp"
 #include "dem/grain_system.hpp"
+#include "schemes/advance_fluid.hpp"
 #include "schemes/fluid_on_grains.hpp"
 #include "schemes/stable_step.hpp"
 
@@ -13,7 +14,8 @@ namespace plumb {
 
 struct Simulation {
     GrainSystem grains;
-    std::optional<FluidOnGrains> fluid; // a prescribed fluid; none without a [fluid] table
+    std::optional<FluidOnGrains> fluid; // fluid.method = "prescribed"
+    std::optional<SphFluid> sph;        // fluid.method = "sph"
     Timing timing;                      // steps, outputs and limits, fixed for the whole run
 };
 

@@ -1,0 +1,175 @@
+#include "schemes/sph_scene.hpp"
+
+#include "sph/arrange_fluid.hpp"
+#include "sph/initial_fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace plumb {
+
+namespace {
+
+// Shares of the three times: Morris, Fox & Zhu 1997, eq. 20 (0.25 h/c), of the stable step of the viscous operator, and
+// Monaghan 1992 (0.25 sqrt(h/f)).
+constexpr double acoustic_share = 0.25, viscous_share = 0.8, force_share = 0.25;
+
+// Skin of the neighbour lists in spacings: wider ones are renewed less often but hold more pairs out of reach.
+constexpr double skin_in_spacings = 0.25;
+
+/// Speed of sound that keeps density changes near 1 % and lets pressure keep up with viscosity: ten times the velocity,
+/// ten times sqrt(pressure drop/rho), and acoustic Reynolds number h c/nu = 20.
+double automatic_sound_speed(Table& table, const SphFluid& f) {
+    const double velocity = table.number("reference_velocity", positive);
+    const double drop = table.number_or("pressure_drop", 0.0, non_negative);
+    return std::max({10.0 * velocity, 10.0 * std::sqrt(drop / f.density), 20.0 * f.viscosity / (f.density * f.h)});
+}
+
+void read_numbers(Table& table, SphFluid& f) {
+    f.density = table.number("density", positive);
+    f.viscosity = table.number("viscosity", non_negative);
+    f.spacing = table.number("spacing", positive);
+    f.h = table.number("smoothing", {0.5, 10.0, false, false}) * f.spacing;
+    f.mass = f.density * std::pow(f.spacing, f.dimensions);
+    if (table.type("sound_speed") == toml::node_type::string) {
+        table.choice("sound_speed", {"auto"});
+        f.sound_speed = automatic_sound_speed(table, f);
+    } else {
+        f.sound_speed = table.number("sound_speed", positive);
+    }
+}
+
+ViscousTerm read_viscous_term(Table& table, const TermScales& scales) {
+    Table law = table.law("viscous_term");
+    return std::visit([&](const auto& chosen) { return ViscousTerm(std::decay_t<decltype(chosen)>(scales)); },
+                      make_family<ViscousTerm>(law));
+}
+
+void read_models(Table& table, SphFluid& f) {
+    f.kernel = make_family<Kernel>(table.law("kernel"));
+    f.equation_of_state = make_family<EquationOfState>(table.law("equation_of_state"));
+    f.viscous_term = read_viscous_term(table, term_scales(f));
+    if (std::holds_alternative<Inviscid>(f.viscous_term) != (f.viscosity == 0.0))
+        table.fail("viscous_term", fmt::format("\"{}\" does not go with a viscosity of {} Pa s",
+                                               law_name(f.viscous_term), f.viscosity));
+    const double delta = table.number_or("density_diffusion", 0.0, non_negative);
+    const double alpha = table.number_or("artificial_viscosity", 0.0, non_negative);
+    f.extras.diffusion = 2.0 * delta * f.h * f.sound_speed;
+    f.extras.artificial = alpha * f.sound_speed * f.h / f.mass;
+    if (table.has("shifting")) { // D = A h U (Lind et al. 2012; A = 4 in the form of Sun et al. 2017)
+        const double a = table.number("shifting", positive);
+        f.shifting = a * f.h * table.number("reference_velocity", positive);
+        f.extras.shifting = true;
+        f.extras.mass = f.mass;
+    }
+    f.extras.softening_sq = 0.01 * f.h * f.h;
+    f.clusters.reach = support(f.kernel) * f.h;
+    f.clusters.skin = skin_in_spacings * f.spacing;
+}
+
+/// With "full" pressure the particles feel gravity; with "dynamic" the hydrostatic part is taken out of both.
+void read_forces(Table& table, SphFluid& f) {
+    const bool full = table.choice("pressure", {"full", "dynamic"}) == "full";
+    f.body_force = full ? f.domain.gravity : Vec3::Zero();
+    if (table.has("body_force")) f.body_force += table.components("body_force", f.dimensions);
+}
+
+/// The box must hold a whole number of spacings along every axis, and no more particles than an id can count.
+void check_spacing(const Table& table, const SphFluid& f) {
+    double count = 1.0;
+    for (int c = 0; c < f.dimensions; ++c) {
+        const double cells = f.domain.size[c] / f.spacing;
+        if (std::abs(cells - std::nearbyint(cells)) > 1e-6 * cells || cells < 0.5)
+            table.fail("spacing", fmt::format("the box measures {:.9g} spacings along {}; a whole number is needed",
+                                              cells, axis_names[static_cast<std::size_t>(c)]));
+        count *= cells;
+    }
+    if (count > 2e9) table.fail("spacing", fmt::format("{:.3g} particles; 2e9 are possible", count));
+}
+
+void set_initial_state(Table& table, SphFluid& f) {
+    Table arrange = table.law("arrange");
+    const bool jittered = arrange.choice("law", {"lattice", "jittered"}) == "jittered";
+    const double jitter = jittered ? arrange.number("jitter", {0.0, 0.5, true, false}) : 0.0;
+    const auto seed = static_cast<std::uint64_t>(jittered ? arrange.integer("seed", 0) : 0);
+    check_spacing(table, f);
+    fill_box(f, jitter, seed);
+    const auto initial = make_family<InitialField>(table.law("initial"));
+    const FluidNumbers numbers{f.domain.size, f.density, f.sound_speed, f.viscosity};
+    for (std::size_t k = 0; k < f.slots(); ++k) {
+        Vec3 x = Vec3::Zero();
+        for (int c = 0; c < f.dimensions; ++c) x[c] = f.x[static_cast<std::size_t>(c)][k];
+        const FlowState state = std::visit([&](const auto& field) { return field(x, numbers); }, initial);
+        for (int c = 0; c < f.dimensions; ++c) f.v[static_cast<std::size_t>(c)][k] = state.u[c];
+        f.rho[k] = std::visit([&](const auto& law) { return law.density(state.p, f.density, f.sound_speed); },
+                              f.equation_of_state);
+    }
+}
+
+} // namespace
+
+SphFluid read_sph_fluid(Table& table, const Domain& domain) {
+    SphFluid f;
+    f.dimensions = domain.dimensions;
+    f.domain = domain;
+    table.choice("method", {"sph"});
+    read_numbers(table, f);
+    read_models(table, f);
+    read_forces(table, f);
+    for (int c = 0; c < f.dimensions; ++c)
+        if (!domain.periodic[static_cast<std::size_t>(c)])
+            table.fail("method", "\"sph\" has no walls yet: every side of the box must be periodic");
+    set_initial_state(table, f);
+    return f;
+}
+
+namespace {
+
+/// Greatest rate at which the viscous sum damps anything, times h^2/nu: factor * integral of -W'/r, which the shortest
+/// waves feel (for Morris' term and Wendland C2: 7). The midpoint rule with a predicted velocity is stable up to a rate
+/// of 1/step (verification/sound_wave).
+double viscous_rate(const SphFluid& f) {
+    const int d = f.dimensions;
+    const double integral = std::visit(
+        [d](const auto& kernel) {
+            using Law = std::decay_t<decltype(kernel)>;
+            constexpr int n = 2000; // midpoint rule
+            double sum = 0.0;
+            for (int k = 0; k < n; ++k) {
+                const double q = Law::support * (k + 0.5) / n;
+                sum -= Law::f(q) * std::pow(q, d - 1) * Law::support / n;
+            }
+            return Law::sigma(d) * (d == 2 ? 2.0 : 4.0) * std::numbers::pi * sum;
+        },
+        f.kernel);
+    const double per_viscosity = f.mass * f.mass / f.viscosity;
+    const double factor = std::visit(
+        [&](const auto& law) {
+            using Law = std::decay_t<decltype(law)>;
+            if constexpr (std::is_same_v<Law, Inviscid>)
+                return 0.0;
+            else if constexpr (std::is_same_v<Law, Morris>)
+                return law.coefficient * per_viscosity; // 2
+            else
+                return law.coefficient * per_viscosity / d; // acts along the line of centres only
+        },
+        f.viscous_term);
+    return factor * integral;
+}
+
+} // namespace
+
+std::vector<StepLimit> fluid_limits(const SphFluid& f) {
+    const double none = std::numeric_limits<double>::infinity();
+    const double nu = f.viscosity / f.density, force = f.body_force.norm();
+    return {{"acoustic", acoustic_share * f.h / f.sound_speed, "0.25 h/c"},
+            {"viscous", nu > 0.0 ? viscous_share * f.h * f.h / (nu * viscous_rate(f)) : none,
+             "0.8 over the greatest rate of the viscous operator"},
+            {"force", force > 0.0 ? force_share * std::sqrt(f.h / force) : none, "0.25 sqrt(h/f)"}};
+}
+
+} // namespace plumb

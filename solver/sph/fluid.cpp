@@ -1,0 +1,78 @@
+#include "sph/fluid.hpp"
+
+#include "core/parallel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plumb {
+
+namespace {
+
+/// Every field of every particle, for whatever has to move with it.
+template <class Visit> void for_each_moving_field(SphFluid& f, Visit&& visit) {
+    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
+        for (VectorField* field : {&f.x, &f.v, &f.a, &f.x_listed}) visit((*field)[c]);
+    visit(f.rho);
+    visit(f.drho);
+}
+
+void permute(Field<double>& field, const std::vector<std::int32_t>& from, Field<double>& spare) {
+    spare.resize(from.size());
+    parallel_for(from.size(), [&](std::size_t k) { spare[k] = field[static_cast<std::size_t>(from[k])]; });
+    std::swap(field, spare);
+}
+
+/// New lists for the positions `at`; all fields are put into the new order.
+void rebuild_for(SphFluid& f, const VectorField& at) {
+    const ClusterOrder order = rebuild(f.clusters, {at, f.id}, f.domain, f.dimensions, f.spacing);
+    Field<double> spare;
+    for_each_moving_field(f, [&](Field<double>& field) { permute(field, order.from, spare); });
+    std::vector<std::int32_t> id(order.from.size());
+    for (std::size_t k = 0; k < id.size(); ++k)
+        id[k] = order.copy[k] != 0 ? -1 : f.id[static_cast<std::size_t>(order.from[k])];
+    f.id = std::move(id);
+    if (!f.extras.shifting) return; // these are made anew by the next evaluation
+    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
+        for (VectorField* field : {&f.spread, &f.dv_spread}) (*field)[c].assign(f.id.size(), 0.0);
+    f.drho_spread.assign(f.id.size(), 0.0);
+}
+
+} // namespace
+
+std::size_t particle_count(const SphFluid& fluid) {
+    return static_cast<std::size_t>(
+        std::count_if(fluid.id.begin(), fluid.id.end(), [](std::int32_t i) { return i >= 0; }));
+}
+
+std::vector<std::int32_t> slots_of_ids(const SphFluid& fluid) {
+    std::vector<std::int32_t> slot(particle_count(fluid));
+    for (std::size_t k = 0; k < fluid.slots(); ++k)
+        if (fluid.id[k] >= 0) slot[static_cast<std::size_t>(fluid.id[k])] = static_cast<std::int32_t>(k);
+    return slot;
+}
+
+void renew_lists(SphFluid& f) {
+    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {
+        f.x_listed[c].resize(f.slots());
+        const double side = f.domain.size[static_cast<Eigen::Index>(c)];
+        const bool periodic = f.domain.periodic[c];
+        parallel_for(f.slots(), [&](std::size_t k) {
+            double& x = f.x[c][k];
+            if (periodic) {
+                x -= side * std::floor(x / side);
+                if (x >= side) x = 0.0; // the product is rounded
+            }
+            f.x_listed[c][k] = x;
+        });
+    }
+    const VectorField at = f.x_listed;
+    rebuild_for(f, at);
+}
+
+void restore_lists(SphFluid& f) {
+    const VectorField at = f.x_listed;
+    rebuild_for(f, at);
+}
+
+} // namespace plumb

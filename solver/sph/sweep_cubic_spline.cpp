@@ -1,0 +1,5 @@
+#include "sph/sweep.hpp"
+
+namespace plumb {
+template void evaluate_with<CubicSpline>(SphFluid&);
+} // namespace plumb
