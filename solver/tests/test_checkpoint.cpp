@@ -114,6 +114,40 @@ quantity = "grain_fluid_force"
 axis = "x"
 )";
 
+/// Smoothed particles with every term, jittered so that lists are renewed often.
+constexpr const char* flowing = R"(
+[domain]
+size = [1.0, 1.0]
+periodic = [true, true]
+gravity = [0.0, 0.0]
+[fluid]
+method = "sph"
+density = 1.0
+viscosity = 0.01
+spacing = 0.05
+smoothing = 1.5
+kernel = "wendland_c2"
+equation_of_state = "tait"
+sound_speed = 10.0
+pressure = "full"
+viscous_term = "morris"
+density_diffusion = 0.1
+artificial_viscosity = 0.02
+shifting = 4.0
+reference_velocity = 1.0
+arrange = {law = "jittered", jitter = 0.1, seed = 1}
+initial = {law = "taylor_green", speed = 1.0}
+[time]
+end = 0.2
+output_interval = 0.02
+integrator = "midpoint"
+step = "auto"
+snapshots = true
+[[probe]]
+name = "energy"
+quantity = "fluid_kinetic_energy"
+)";
+
 class CheckpointFiles : public testing::Test {
 protected:
     CheckpointFiles()
@@ -145,6 +179,12 @@ std::vector<std::uint64_t> bits(const Simulation& s) {
         for (const auto* field : {&g.x, &g.turns, &g.v, &g.a, &g.omega, &g.alpha})
             for (int c = 0; c < 3; ++c) put((*field)[at][c]);
         put(g.radius[at]), put(g.mass[at]), put(g.mobility[at]);
+    }
+    if (!s.sph) return all;
+    for (const std::int32_t slot : slots_of_ids(*s.sph)) {
+        const auto at = static_cast<std::size_t>(slot);
+        for (std::size_t c = 0; c < 2; ++c) put(s.sph->x[c][at]), put(s.sph->v[c][at]), put(s.sph->a[c][at]);
+        put(s.sph->rho[at]), put(s.sph->drho[at]);
     }
     return all;
 }
@@ -185,7 +225,7 @@ TEST_P(Checkpoint, RunsAreTheSameForAnyNumberOfThreads) {
     EXPECT_TRUE(found.same) << found.text;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint, testing::Values(dry, wet));
+INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint, testing::Values(dry, wet, flowing));
 
 std::string complaint(const std::string& path) {
     try {
