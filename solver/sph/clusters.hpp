@@ -54,13 +54,14 @@ struct ParticlePlaces {
     const std::vector<std::int32_t>& id;
 };
 
-/// Sorts the particles and builds lists and records' places. Returns the new order: slot k holds what was in slot
-/// order[k]; copies name the particle they copy, and is_copy(k) tells. The result depends on positions and ids only.
-/// InputError when a periodic side is shorter than two reaches.
+/// New order of the slots: slot k holds what was in slot from[k]; copy[k] is 1 where it is a copy that fills a cluster.
 struct ClusterOrder {
     std::vector<std::int32_t> from;
     std::vector<std::uint8_t> copy;
 };
+
+/// Sorts the particles and builds lists and records' places. The result depends on positions and ids only.
+/// InputError when a periodic side is shorter than two reaches.
 ClusterOrder rebuild(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, int dimensions,
                      double spacing);
 
