@@ -6,9 +6,9 @@
 #include "core/csv.hpp"
 #include "core/domain.hpp"
 #include "core/laws.hpp"
+#include "core/walls.hpp"
 #include "dem/grains.hpp"
 #include "dem/start_laws.hpp"
-#include "dem/walls.hpp"
 
 #include <array>
 #include <cstdint>

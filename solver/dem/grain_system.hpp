@@ -2,12 +2,12 @@
 #pragma once
 
 #include "core/domain.hpp"
+#include "core/walls.hpp"
 #include "dem/contact_model.hpp"
 #include "dem/grains.hpp"
 #include "dem/injectors.hpp"
 #include "dem/neighbours.hpp"
 #include "dem/wall_contacts.hpp"
-#include "dem/walls.hpp"
 
 #include <algorithm>
 #include <cstdint>

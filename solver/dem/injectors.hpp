@@ -7,9 +7,9 @@
 
 #include "core/domain.hpp"
 #include "core/table.hpp"
+#include "core/walls.hpp"
 #include "dem/grains.hpp"
 #include "dem/start_laws.hpp"
-#include "dem/walls.hpp"
 
 #include <cstdint>
 #include <vector>

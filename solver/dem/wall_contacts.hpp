@@ -2,10 +2,10 @@
 #pragma once
 
 #include "core/domain.hpp"
+#include "core/walls.hpp"
 #include "dem/contact_model.hpp"
 #include "dem/grains.hpp"
 #include "dem/neighbours.hpp"
-#include "dem/walls.hpp"
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "dem/walls.hpp"
+#include "core/walls.hpp"
 
 #include "core/errors.hpp"
 #include "core/random.hpp"

@@ -7,9 +7,9 @@
 #pragma once
 
 #include "core/laws.hpp"
+#include "core/triangle_mesh.hpp"
 #include "core/vec.hpp"
-#include "dem/triangle_mesh.hpp"
-#include "dem/wall_point.hpp"
+#include "core/wall_point.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "dem/stl.hpp"
+#include "core/stl.hpp"
 
 #include "core/csv.hpp"
 #include "core/errors.hpp"

@@ -1,4 +1,4 @@
-#include "dem/walls.hpp"
+#include "core/walls.hpp"
 
 #include <fmt/format.h>
 

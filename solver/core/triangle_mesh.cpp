@@ -1,4 +1,4 @@
-#include "dem/triangle_mesh.hpp"
+#include "core/triangle_mesh.hpp"
 
 #include "core/csv.hpp"
 

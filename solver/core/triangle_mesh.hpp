@@ -11,8 +11,8 @@
 #pragma once
 
 #include "core/laws.hpp"
-#include "dem/stl.hpp"
-#include "dem/wall_point.hpp"
+#include "core/stl.hpp"
+#include "core/wall_point.hpp"
 
 #include <array>
 #include <cstdint>
