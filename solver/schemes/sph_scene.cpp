@@ -75,7 +75,11 @@ void read_models(Table& table, SphFluid& f) {
 void read_forces(Table& table, SphFluid& f) {
     const bool full = table.choice("pressure", {"full", "dynamic"}) == "full";
     f.body_force = full ? f.domain.gravity : Vec3::Zero();
+    const Vec3 gravity = f.body_force;
     if (table.has("body_force")) f.body_force += table.components("body_force", f.dimensions);
+    const Vec3 head = gravity * (f.density / (f.mass * f.sound_speed * f.sound_speed));
+    f.extras.stratification = {head[0], head[1], head[2]};
+    f.extras.stratified = gravity.norm() > 0.0;
 }
 
 /// The box must hold a whole number of spacings along every axis, and no more particles than an id can count.
@@ -91,15 +95,33 @@ void check_spacing(const Table& table, const SphFluid& f) {
     if (count > 2e9) table.fail("spacing", fmt::format("{:.3g} particles; 2e9 are possible", count));
 }
 
-void set_initial_state(Table& table, SphFluid& f) {
+/// The part of the box that is filled: all of it, or what `fill` says; not the walls.
+std::function<bool(const Vec3&)> filled_part(Table& table, const std::vector<FluidWall>& walls) {
+    std::optional<Fill> fill;
+    if (table.has("fill")) fill = make_family<Fill>(table.law("fill"));
+    return [fill, &walls](const Vec3& x) {
+        if (fill && !std::visit([&](const auto& part) { return part(x); }, *fill)) return false;
+        return walls.empty() || !is_solid(walls, x);
+    };
+}
+
+void set_initial_state(Table& table, SphFluid& f, const std::vector<FluidWall>& walls) {
     Table arrange = table.law("arrange");
     const bool jittered = arrange.choice("law", {"lattice", "jittered"}) == "jittered";
     const double jitter = jittered ? arrange.number("jitter", {0.0, 0.5, true, false}) : 0.0;
     const auto seed = static_cast<std::uint64_t>(jittered ? arrange.integer("seed", 0) : 0);
     check_spacing(table, f);
-    fill_box(f, jitter, seed);
+    fill_box(f, jitter, seed, filled_part(table, walls));
+    if (f.slots() == 0) table.fail("arrange", "there is no place for the fluid");
+    line_walls(f, walls);
+    f.walls = walls;
     const auto initial = make_family<InitialField>(table.law("initial"));
-    const FluidNumbers numbers{f.domain.size, f.density, f.sound_speed, f.viscosity};
+    const FluidNumbers numbers{f.domain.size,
+                               f.density,
+                               f.sound_speed,
+                               f.viscosity,
+                               f.extras.stratified ? f.domain.gravity : Vec3(Vec3::Zero()),
+                               f.equation_of_state};
     for (std::size_t k = 0; k < f.slots(); ++k) {
         Vec3 x = Vec3::Zero();
         for (int c = 0; c < f.dimensions; ++c) x[c] = f.x[static_cast<std::size_t>(c)][k];
@@ -112,7 +134,22 @@ void set_initial_state(Table& table, SphFluid& f) {
 
 } // namespace
 
-SphFluid read_sph_fluid(Table& table, const Domain& domain) {
+std::vector<FluidWall> read_fluid_walls(std::vector<Table>& tables, const Domain& domain) {
+    std::vector<WallBody> bodies = make_walls(tables, domain.dimensions);
+    std::vector<FluidWall> walls;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        FluidWall wall{std::move(bodies[k])};
+        wall.slips = tables[k].choice("slip", {"no_slip", "free_slip"}) == "free_slip";
+        if (std::holds_alternative<TriangleMesh>(wall.body.shape)) {
+            if (domain.dimensions == 2) tables[k].fail("shape", "\"stl\" in a scene of two dimensions");
+            wall.fluid_is_inside = tables[k].choice("fluid_side", {"inside", "outside"}) == "inside";
+        }
+        walls.push_back(std::move(wall));
+    }
+    return walls;
+}
+
+SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<FluidWall>& walls) {
     SphFluid f;
     f.dimensions = domain.dimensions;
     f.domain = domain;
@@ -120,30 +157,22 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain) {
     read_numbers(table, f);
     read_models(table, f);
     read_forces(table, f);
-    for (int c = 0; c < f.dimensions; ++c)
-        if (!domain.periodic[static_cast<std::size_t>(c)])
-            table.fail("method", "\"sph\" has no walls yet: every side of the box must be periodic");
-    set_initial_state(table, f);
+    f.free_surface = table.has("free_surface") && table.flag("free_surface");
+    set_initial_state(table, f, walls);
     return f;
 }
 
 namespace {
 
 /// Greatest rate at which the viscous sum damps anything, times h^2/nu: factor * integral of -W'/r, which the shortest
-/// waves feel (for Morris' term and Wendland C2: 7). The midpoint rule with a predicted velocity is stable up to a rate
-/// of 1/step (verification/sound_wave).
+/// waves feel (for Morris' term and Wendland C2: 7). The step is stable up to a rate of 1/((1 + memory) step)
+/// (advance_fluid.hpp).
 double viscous_rate(const SphFluid& f) {
     const int d = f.dimensions;
     const double integral = std::visit(
         [d](const auto& kernel) {
             using Law = std::decay_t<decltype(kernel)>;
-            constexpr int n = 2000; // midpoint rule
-            double sum = 0.0;
-            for (int k = 0; k < n; ++k) {
-                const double q = Law::support * (k + 0.5) / n;
-                sum -= Law::f(q) * std::pow(q, d - 1) * Law::support / n;
-            }
-            return Law::sigma(d) * (d == 2 ? 2.0 : 4.0) * std::numbers::pi * sum;
+            return Law::sigma(d) * ball_integral<Law>(d, [](double q) { return -Law::f(q); });
         },
         f.kernel);
     const double per_viscosity = f.mass * f.mass / f.viscosity;
@@ -167,7 +196,7 @@ std::vector<StepLimit> fluid_limits(const SphFluid& f) {
     const double none = std::numeric_limits<double>::infinity();
     const double nu = f.viscosity / f.density, force = f.body_force.norm();
     return {{"acoustic", acoustic_share * f.h / f.sound_speed, "0.25 h/c"},
-            {"viscous", nu > 0.0 ? viscous_share * f.h * f.h / (nu * viscous_rate(f)) : none,
+            {"viscous", nu > 0.0 ? viscous_share * f.h * f.h / (nu * viscous_rate(f) * (1.0 + f.memory)) : none,
              "0.8 over the greatest rate of the viscous operator"},
             {"force", force > 0.0 ? force_share * std::sqrt(f.h / force) : none, "0.25 sqrt(h/f)"}};
 }
