@@ -112,7 +112,7 @@ Json sph_part(const Simulation& s) {
         fastest = std::max(fastest, std::hypot(f.v[0][k], f.v[1][k], f.dimensions == 3 ? f.v[2][k] : 0.0));
     const double nu = f.viscosity / f.density, none = std::numeric_limits<double>::infinity();
     return {
-        {"particles", particle_count(f)},
+        {"particles", f.particles},
         {"dimensions", f.dimensions},
         {"kernel", law_name(f.kernel)},
         {"h", f.h},
@@ -126,7 +126,7 @@ Json sph_part(const Simulation& s) {
 
 Json sph_cost_part(const Run& run) {
     const Simulation& s = run.simulation;
-    const double n = static_cast<double>(particle_count(*s.sph)), steps = static_cast<double>(total_steps(s.timing));
+    const double n = static_cast<double>(s.sph->particles), steps = static_cast<double>(total_steps(s.timing));
     const double rate = s.sph->dimensions == 2 ? particle_rate_plane : particle_rate;
     return {{"grain_steps", n * steps},
             {"memory_bytes", bytes_of_program + bytes_per_particle * n},

@@ -70,15 +70,43 @@ template <class Fluid, class Visit> void for_each_fluid_field(Fluid& f, Visit&& 
     }
     visit("sph/rho", f.rho);
     visit("sph/drho", f.drho);
+    if (f.memory == 0.0) return;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
+        visit(fmt::format("sph/a_before_{}", axis_names[c]), f.a_before[c]);
+    visit("sph/drho_before", f.drho_before);
+}
+
+/// Fields of the boundary particles.
+template <class Boundary, class Visit> void for_each_boundary_field(Boundary& b, int dimensions, Visit&& visit) {
+    for (std::size_t c = 0; c < static_cast<std::size_t>(dimensions); ++c) {
+        visit(fmt::format("sph/boundary/x_{}", axis_names[c]), b.x[c]);
+        visit(fmt::format("sph/boundary/mirror_{}", axis_names[c]), b.mirror[c]);
+        visit(fmt::format("sph/boundary/velocity_{}", axis_names[c]), b.velocity[c]);
+        visit(fmt::format("sph/boundary/mirror_velocity_{}", axis_names[c]), b.mirror_velocity[c]);
+        visit(fmt::format("sph/boundary/x_listed_{}", axis_names[c]), b.x_listed[c]);
+        visit(fmt::format("sph/boundary/mirror_listed_{}", axis_names[c]), b.mirror_listed[c]);
+    }
+    visit("sph/boundary/mean_speed", b.mean_speed);
+    visit("sph/boundary/mean_pressure", b.mean_pressure);
 }
 
 void write_sph(Hdf5Writer& file, const SphFluid& f) {
-    const std::vector<std::int32_t> slot = slots_of_ids(f);
+    const std::vector<std::int32_t> slot = ordered_slots(f);
     for_each_fluid_field(f, [&](const std::string& name, const Field<double>& field) {
         std::vector<double> values(slot.size());
         for (std::size_t k = 0; k < slot.size(); ++k) values[k] = field[static_cast<std::size_t>(slot[k])];
         file.write(name, values);
     });
+    std::vector<std::int32_t> id;
+    for (const std::int32_t k : slot) id.push_back(f.id[static_cast<std::size_t>(k)]);
+    file.write("sph/id", id);
+    file.write("sph/next_id", std::vector<std::int64_t>{f.next_id});
+    if (f.boundary.size() == 0) return;
+    for_each_boundary_field(f.boundary, f.dimensions, [&](const std::string& name, const Field<double>& field) {
+        file.write(name, std::vector<double>(field.begin(), field.end()));
+    });
+    file.write("sph/boundary/side", f.boundary.side);
+    file.write("sph/boundary/ways", std::vector<double>{f.boundary.fastest, f.boundary.travelled});
 }
 
 void write_outputs(Hdf5Writer& file, const Run& run) {
@@ -150,6 +178,7 @@ private:
     std::vector<RememberedContact> pairs(std::size_t n) const;
     std::vector<WallContact> walls(std::size_t n, std::size_t walls) const;
     void load_fluid(FluidOnGrains& fluid, std::size_t n) const;
+    void load_boundary(BoundaryParticles& boundary, int dimensions) const;
     void load_sph(SphFluid& fluid) const;
     void load_outputs(Run& run, const nlohmann::json& saved) const;
 
@@ -230,14 +259,30 @@ void Loader::load_fluid(FluidOnGrains& fluid, std::size_t n) const {
     fluid.range_use.inside = use[0], fluid.range_use.outside = use[1];
 }
 
+void Loader::load_boundary(BoundaryParticles& b, int dimensions) const {
+    const std::vector<std::int64_t> side = file_.integers("sph/boundary/side");
+    for_each_boundary_field(b, dimensions, [&](const std::string& name, Field<double>& field) {
+        const std::vector<double> values = file_.doubles(name); // means may be NaN
+        demand(values.size() == side.size(), name.c_str());
+        field.assign(values.begin(), values.end());
+    });
+    b.side.assign(side.begin(), side.end());
+    b.rule.resize(side.size()); // those of walls come first and follow from the scene
+    const std::vector<double> ways = doubles("sph/boundary/ways", 2);
+    b.fastest = ways[0], b.travelled = ways[1];
+}
+
 void Loader::load_sph(SphFluid& f) const {
-    const std::size_t n = particle_count(f);
+    const std::vector<std::int64_t> ids = file_.integers("sph/id");
+    const std::size_t n = ids.size();
     for_each_fluid_field(f, [&](const std::string& name, Field<double>& field) {
         const std::vector<double> values = doubles(name, n);
         field.assign(values.begin(), values.end());
     });
-    f.id.resize(n);
-    for (std::size_t k = 0; k < n; ++k) f.id[k] = static_cast<std::int32_t>(k);
+    f.id.assign(ids.begin(), ids.end());
+    f.particles = n;
+    f.next_id = static_cast<std::int32_t>(integers("sph/next_id", 1)[0]);
+    if (f.boundary.size() > 0) load_boundary(f.boundary, f.dimensions);
     restore_lists(f);
 }
 

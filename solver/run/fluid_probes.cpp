@@ -12,7 +12,7 @@ std::size_t axis_of(Table& table, std::string_view key) { return axis_names.find
 
 /// 1/n sum of term(slot) in the order of ids.
 template <class Term> double mean(const SphFluid& f, Term&& term) {
-    const std::vector<std::int32_t> slot = slots_of_ids(f);
+    const std::vector<std::int32_t> slot = ordered_slots(f);
     const double sum =
         ordered_sum(slot.size(), 0.0, [&](std::size_t id) { return term(static_cast<std::size_t>(slot[id])); });
     return sum / static_cast<double>(slot.size());

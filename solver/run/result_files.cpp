@@ -83,7 +83,7 @@ void write_grains(Hdf5Writer& file, const Grains& g) {
 
 /// Particles in the order of ids; vectors have three components, the third 0 in the plane.
 void write_fluid(Hdf5Writer& file, const SphFluid& f) {
-    const std::vector<std::int32_t> slot = slots_of_ids(f);
+    const std::vector<std::int32_t> slot = ordered_slots(f);
     const std::size_t n = slot.size();
     std::vector<double> x(3 * n), v(3 * n), rho(n), p(n);
     std::vector<std::int32_t> id(n);

@@ -30,9 +30,7 @@ inline Run make_run(Scene scene) {
 }
 
 /// Grains and fluid particles: what a step updates.
-inline std::size_t item_count(const Simulation& s) {
-    return s.grains.grains.size() + (s.sph ? particle_count(*s.sph) : 0);
-}
+inline std::size_t item_count(const Simulation& s) { return s.grains.grains.size() + (s.sph ? s.sph->particles : 0); }
 
 /// Steps of the whole run.
 inline std::int64_t total_steps(const Timing& timing) { return timing.outputs * timing.steps_per_output; }

@@ -40,8 +40,8 @@ struct Prediction {
     double last, before;
 };
 
-/// Records of the state half a step ahead of v and rho; x is there already.
-void fill_records(SphFluid& f, double half) {
+/// Records of the state half a step ahead of v and rho, `since` after the last ones; x is there already.
+void fill_records(SphFluid& f, double half, double since) {
     const Prediction rate{half * (1.0 + f.memory), -half * f.memory};
     const bool remembers = f.memory > 0.0;
     std::visit(
@@ -66,7 +66,7 @@ void fill_records(SphFluid& f, double half) {
         f.equation_of_state);
     update_images(f.clusters, f.domain);
     if (f.boundary.size() == 0) return;
-    continue_state(f);
+    continue_state(f, since);
     update_images(f.clusters, f.domain);
 }
 
@@ -153,9 +153,10 @@ void advance_fluid(SphFluid& f, double dt, std::int64_t step) {
     move_boundary(f, 0.5 * dt);
     if (drift(f, 0.5 * dt) || f.boundary.travelled > 0.5 * f.clusters.skin) {
         stop_at_walls(f, dt, step);
+        pass_open_sides(f);
         renew_lists(f);
     }
-    fill_records(f, 0.5 * dt);
+    fill_records(f, 0.5 * dt, dt);
     remember_rates(f);
     evaluate_terms(f);
     correct(f, dt, step);
@@ -170,7 +171,7 @@ void start(SphFluid& f) {
         f.drho_before = f.drho;
     }
     renew_lists(f);
-    fill_records(f, 0.0);
+    fill_records(f, 0.0, 0.0);
     evaluate_terms(f);
     if (f.memory == 0.0) return;
     f.a_before = f.a;

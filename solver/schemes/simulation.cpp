@@ -152,7 +152,9 @@ void make_sph(Table& root, Simulation& s) {
         if (root.has(key)) root.fail(key, "does not go with fluid.method = \"sph\" yet");
     Table fluid = root.table("fluid");
     std::vector<Table> wall_tables = root.tables("wall");
-    s.sph = read_sph_fluid(fluid, s.grains.domain, read_fluid_walls(wall_tables, s.grains.domain));
+    std::vector<Table> inlets = root.tables("inlet"), outlets = root.tables("outlet");
+    s.sph = read_sph_fluid(fluid, s.grains.domain, read_fluid_walls(wall_tables, s.grains.domain),
+                           read_open_sides(inlets, outlets, s.grains.domain));
     check_periodic_sides(s.grains.domain, s.sph->clusters.reach + s.sph->clusters.skin, root.file());
     Table time = root.table("time");
     s.sph->memory = time.choice("integrator", {"midpoint", "damped_midpoint"}) == "midpoint" ? 0.0 : 0.5;

@@ -95,26 +95,26 @@ void check_spacing(const Table& table, const SphFluid& f) {
     if (count > 2e9) table.fail("spacing", fmt::format("{:.3g} particles; 2e9 are possible", count));
 }
 
-/// The part of the box that is filled: all of it, or what `fill` says; not the walls.
-std::function<bool(const Vec3&)> filled_part(Table& table, const std::vector<FluidWall>& walls) {
+/// The part of the box that is filled: all of it, or what `fill` says; not the walls, nor behind open sides.
+std::function<bool(const Vec3&)> filled_part(Table& table, const SphFluid& f) {
     std::optional<Fill> fill;
     if (table.has("fill")) fill = make_family<Fill>(table.law("fill"));
-    return [fill, &walls](const Vec3& x) {
+    return [fill, &f](const Vec3& x) {
         if (fill && !std::visit([&](const auto& part) { return part(x); }, *fill)) return false;
-        return walls.empty() || !is_solid(walls, x);
+        return (f.walls.empty() || !is_solid(f.walls, x)) && !is_outside(f.open_sides, x);
     };
 }
 
-void set_initial_state(Table& table, SphFluid& f, const std::vector<FluidWall>& walls) {
+void set_initial_state(Table& table, SphFluid& f) {
     Table arrange = table.law("arrange");
     const bool jittered = arrange.choice("law", {"lattice", "jittered"}) == "jittered";
     const double jitter = jittered ? arrange.number("jitter", {0.0, 0.5, true, false}) : 0.0;
     const auto seed = static_cast<std::uint64_t>(jittered ? arrange.integer("seed", 0) : 0);
     check_spacing(table, f);
-    fill_box(f, jitter, seed, filled_part(table, walls));
+    fill_box(f, jitter, seed, filled_part(table, f));
     if (f.slots() == 0) table.fail("arrange", "there is no place for the fluid");
-    line_walls(f, walls);
-    f.walls = walls;
+    line_walls(f);
+    fill_buffers(f);
     const auto initial = make_family<InitialField>(table.law("initial"));
     const FluidNumbers numbers{f.domain.size,
                                f.density,
@@ -149,7 +149,39 @@ std::vector<FluidWall> read_fluid_walls(std::vector<Table>& tables, const Domain
     return walls;
 }
 
-SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<FluidWall>& walls) {
+namespace {
+
+OpenSide read_open_side(Table& table, const Domain& domain) {
+    OpenSide side;
+    side.name = table.text("name");
+    side.point = table.components("point", domain.dimensions);
+    side.normal = table.components("normal", domain.dimensions);
+    if (!(side.normal.norm() > 0.0)) table.fail("normal", "is zero; expected a direction");
+    side.normal.normalize();
+    for (int c = 0; c < domain.dimensions; ++c)
+        if (domain.periodic[static_cast<std::size_t>(c)] && side.normal[c] != 0.0)
+            table.fail("normal", "points along a periodic side");
+    side.averaging_time = table.number("averaging_time", positive);
+    return side;
+}
+
+} // namespace
+
+std::vector<OpenSide> read_open_sides(std::vector<Table>& inlets, std::vector<Table>& outlets, const Domain& domain) {
+    std::vector<OpenSide> sides;
+    for (Table& table : inlets) {
+        sides.push_back(read_open_side(table, domain));
+        sides.back().profile = make_family<InletProfile>(table.law("profile"));
+    }
+    for (Table& table : outlets) {
+        sides.push_back(read_open_side(table, domain));
+        sides.back().pressure = table.number("pressure");
+    }
+    return sides;
+}
+
+SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<FluidWall>& walls,
+                        const std::vector<OpenSide>& open_sides) {
     SphFluid f;
     f.dimensions = domain.dimensions;
     f.domain = domain;
@@ -158,7 +190,9 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<Fl
     read_models(table, f);
     read_forces(table, f);
     f.free_surface = table.has("free_surface") && table.flag("free_surface");
-    set_initial_state(table, f, walls);
+    f.walls = walls;
+    f.open_sides = open_sides;
+    set_initial_state(table, f);
     return f;
 }
 

@@ -13,9 +13,13 @@ namespace plumb {
 /// The walls of the fluid: shapes, velocities and `slip`; for a mesh also `fluid_side`.
 std::vector<FluidWall> read_fluid_walls(std::vector<Table>& tables, const Domain& domain);
 
+/// The planes of the [[inlet]] and [[outlet]] tables.
+std::vector<OpenSide> read_open_sides(std::vector<Table>& inlets, std::vector<Table>& outlets, const Domain& domain);
+
 /// Reads the [fluid] table and puts the particles in place, those of the walls as well. InputError for whatever cannot
 /// be meant.
-SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<FluidWall>& walls);
+SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<FluidWall>& walls,
+                        const std::vector<OpenSide>& open_sides);
 
 /// Bounds of the step: a sound wave, diffusion of momentum, and the body force may each move by a share of h.
 std::vector<StepLimit> fluid_limits(const SphFluid& fluid);

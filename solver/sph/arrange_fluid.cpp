@@ -37,6 +37,8 @@ void fill_box(SphFluid& f, double jitter, std::uint64_t seed, const std::functio
     f.drho.assign(count, 0.0);
     f.id.resize(count);
     for (std::size_t k = 0; k < count; ++k) f.id[k] = static_cast<std::int32_t>(k);
+    f.next_id = static_cast<std::int32_t>(count);
+    f.particles = count;
 }
 
 } // namespace plumb

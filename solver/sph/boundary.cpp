@@ -5,6 +5,8 @@
 #include "sph/interpolation.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -13,6 +15,12 @@ namespace plumb {
 namespace {
 
 constexpr double least_cover = 0.05; // of the fluid around a mirror point, below which it counts as dry
+
+/// Calls visit(field) for every field of vectors.
+template <class Visit> void for_each_vector_field(BoundaryParticles& b, Visit&& visit) {
+    for (VectorField* field : {&b.x, &b.mirror, &b.velocity, &b.mirror_velocity, &b.x_listed, &b.mirror_listed})
+        visit(*field);
+}
 
 /// Order of the mirror points in which neighbours are near each other: by column of the records' grid, then along it.
 std::vector<std::int32_t> sorted_mirrors(const SphFluid& f, const VectorField& mirror) {
@@ -28,33 +36,99 @@ std::vector<std::int32_t> sorted_mirrors(const SphFluid& f, const VectorField& m
     return order;
 }
 
-FluidRecord record_of(const SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane) {
+Vec3 at(const VectorField& field, std::size_t k, int dimensions) {
+    Vec3 x = Vec3::Zero();
+    for (int c = 0; c < dimensions; ++c) x[c] = field[static_cast<std::size_t>(c)][k];
+    return x;
+}
+
+Vec3 lane_of(const std::array<Pack, 3>& packs, int lane) { return {packs[0][lane], packs[1][lane], packs[2][lane]}; }
+
+FluidRecord record_of(const SphFluid& f, const Vec3& x, const Vec3& u, double p) {
+    const double rho = density_of_pressure(f, p);
+    return {x[0], x[1], x[2], p / (rho * rho), u[0], u[1], u[2], f.mass / rho};
+}
+
+FluidRecord wall_record(const SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane) {
     const BoundaryParticles& b = f.boundary;
     const Continuation& rule = b.rule[k];
-    const bool wet = group.covered[lane] > least_cover;
-    Vec3 u = Vec3::Zero(), away = Vec3::Zero();
-    FluidRecord record{};
-    double* const position = &record.x;
-    double* const velocity = &record.u;
-    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {
-        const auto axis = static_cast<Eigen::Index>(c);
-        position[c] = b.x[c][k];
-        away[axis] = b.x[c][k] - b.mirror[c][k];
-        u[axis] = group.u[c][lane];
-    }
-    u = wet ? Vec3(rule.turn * u + rule.offset) : Vec3(0.5 * rule.offset);
-    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
-        velocity[c] = u[static_cast<Eigen::Index>(c)];
+    const Vec3 x = at(b.x, k, f.dimensions);
+    if (group.covered[lane] <= least_cover) return record_of(f, x, 0.5 * rule.offset, 0.0);
+    const Vec3 away = f.domain.minimum_image(x - at(b.mirror, k, f.dimensions));
+    return record_of(f, x, rule.turn * lane_of(group.u, lane) + rule.offset,
+                     group.p[lane] + f.density * f.body_force.dot(away));
+}
+
+/// Moves a mean towards a value; NaN takes the value.
+void follow(double& mean, double value, double share) {
+    mean = std::isnan(mean) ? value : mean + share * (value - mean);
+}
+
+/// State in the buffer of an open side: with e along the flow, the deviations p' and u' from the slow means at the
+/// mirror point send p' + rho c u' with the flow and p' - rho c u' against it. What leaves goes on into the buffer,
+/// nothing comes back. The means are the profile and the pressure of the fluid, continued linearly, at an inlet; the
+/// velocity of the fluid and a pressure antisymmetric about the given one at an outlet. Also sets how the particle
+/// moves.
+FluidRecord open_record(SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane, double since) {
+    BoundaryParticles& b = f.boundary;
+    const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
+    const double direction = side.is_inlet() ? 1.0 : -1.0, impedance = f.density * f.sound_speed;
+    const Vec3 e = direction * side.normal, x = at(b.x, k, f.dimensions), fluid_u = lane_of(group.u, lane);
+    const double speed = fluid_u.dot(e);
     const double p =
-        wet ? rule.share * (group.p[lane] + f.density * f.body_force.dot(f.domain.minimum_image(away))) + rule.pressure
-            : 0.0;
-    const double rho = density_of_pressure(f, p);
-    record.p_over_rho_sq = p / (rho * rho);
-    record.volume = f.mass / rho;
-    return record;
+        group.p[lane] +
+        (side.is_inlet() ? lane_of(group.p_slope, lane).dot(Vec3(x - at(b.mirror, k, f.dimensions))) : 0.0);
+    const double share = -std::expm1(-since / side.averaging_time);
+    follow(b.mean_speed[k], speed, share);
+    follow(b.mean_pressure[k], p, share);
+    // the wave that leaves: against the flow at an inlet, with it at an outlet
+    const double wave = 0.5 * (p - b.mean_pressure[k] - direction * impedance * (speed - b.mean_speed[k]));
+    const double mean_p = side.is_inlet() ? b.mean_pressure[k] : 2.0 * side.pressure - b.mean_pressure[k];
+    const double mean_u = side.is_inlet() ? side.inflow(x, f.dimensions) : b.mean_speed[k];
+    double along = mean_u - direction * wave / impedance;
+    if (!side.is_inlet()) along = std::max(along, 0.0); // the buffer of an outlet gives nothing back
+    const Vec3 u = (side.is_inlet() ? Vec3(Vec3::Zero()) : Vec3(fluid_u - speed * e)) + along * e;
+    const Vec3 mirrored = u - 2.0 * u.dot(e) * e;
+    for (int c = 0; c < f.dimensions; ++c) {
+        b.velocity[static_cast<std::size_t>(c)][k] = u[c];
+        b.mirror_velocity[static_cast<std::size_t>(c)][k] = mirrored[c];
+    }
+    return record_of(f, x, u, mean_p + wave);
 }
 
 } // namespace
+
+void append_boundary_particle(BoundaryParticles& b, int dimensions, const BoundaryParticle& particle) {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    for (int c = 0; c < dimensions; ++c) {
+        const auto axis = static_cast<std::size_t>(c);
+        b.x[axis].push_back(particle.x[c]);
+        b.mirror[axis].push_back(particle.mirror[c]);
+        b.velocity[axis].push_back(particle.velocity[c]);
+        b.mirror_velocity[axis].push_back(particle.mirror_velocity[c]);
+        b.x_listed[axis].push_back(particle.x[c]);
+        b.mirror_listed[axis].push_back(particle.mirror[c]);
+    }
+    b.side.push_back(particle.side);
+    b.rule.push_back(particle.rule);
+    b.mean_speed.push_back(unknown);
+    b.mean_pressure.push_back(unknown);
+    b.fastest = std::max(b.fastest, particle.velocity.norm());
+}
+
+void keep_boundary_particles(BoundaryParticles& b, int dimensions, const std::vector<std::int32_t>& kept) {
+    const auto keep = [&](auto& field) {
+        for (std::size_t k = 0; k < kept.size(); ++k) field[k] = field[static_cast<std::size_t>(kept[k])];
+        field.resize(kept.size());
+    };
+    for_each_vector_field(b, [&](VectorField& field) {
+        for (std::size_t c = 0; c < static_cast<std::size_t>(dimensions); ++c) keep(field[c]);
+    });
+    keep(b.side);
+    keep(b.rule);
+    keep(b.mean_speed);
+    keep(b.mean_pressure);
+}
 
 void list_mirrors(SphFluid& f) {
     BoundaryParticles& b = f.boundary;
@@ -68,29 +142,32 @@ void list_mirrors(SphFluid& f) {
                  f.clusters.passive);
 }
 
-void continue_state(SphFluid& f) {
-    const BoundaryParticles& b = f.boundary;
+void continue_state(SphFluid& f, double since) {
+    BoundaryParticles& b = f.boundary;
+    const auto continue_group = [&](std::size_t g) {
+        std::array<Pack, 3> places{};
+        for (std::size_t lane = 0; lane < pack_width; ++lane)
+            for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
+                places[c][static_cast<int>(lane)] =
+                    b.mirror[c][static_cast<std::size_t>(b.member[pack_width * g + lane])];
+        const InterpolatedGroup group = interpolated(f, places, b.near_mirror.near(g));
+        for (int lane = 0; lane < pack_width; ++lane) {
+            const std::size_t entry = pack_width * g + static_cast<std::size_t>(lane);
+            if (entry >= b.size()) break; // the rest fills up the last group
+            const auto k = static_cast<std::size_t>(b.member[entry]);
+            f.clusters.records[static_cast<std::size_t>(f.clusters.record_of_passive[k])] =
+                b.side[k] < 0 ? wall_record(f, k, group, lane) : open_record(f, k, group, lane, since);
+        }
+    };
     parallel_chunks(
         b.member.size() / pack_width,
         [&](std::size_t begin, std::size_t end) {
-            for (std::size_t g = begin; g < end; ++g) {
-                std::array<Pack, 3> places{};
-                for (int lane = 0; lane < pack_width; ++lane) {
-                    const auto k = static_cast<std::size_t>(b.member[pack_width * g + static_cast<std::size_t>(lane)]);
-                    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
-                        places[c][lane] = b.mirror[c][k];
-                }
-                const InterpolatedGroup group = interpolated(f, places, b.near_mirror.near(g));
-                for (int lane = 0; lane < pack_width; ++lane) {
-                    const std::size_t entry = pack_width * g + static_cast<std::size_t>(lane);
-                    if (entry >= b.size()) break; // the rest fills up the last group
-                    const auto k = static_cast<std::size_t>(b.member[entry]);
-                    f.clusters.records[static_cast<std::size_t>(f.clusters.record_of_passive[k])] =
-                        record_of(f, k, group, lane);
-                }
-            }
+            for (std::size_t g = begin; g < end; ++g) continue_group(g);
         },
         16);
+    if (f.open_sides.empty()) return;
+    b.fastest = 0.0; // buffers have new velocities
+    for (std::size_t k = 0; k < b.size(); ++k) b.fastest = std::max(b.fastest, at(b.velocity, k, f.dimensions).norm());
 }
 
 void move_boundary(SphFluid& f, double dt) {
@@ -100,7 +177,7 @@ void move_boundary(SphFluid& f, double dt) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
         parallel_for(b.size(), [&](std::size_t k) {
             b.x[c][k] += dt * b.velocity[c][k];
-            b.mirror[c][k] += dt * b.velocity[c][k];
+            b.mirror[c][k] += dt * b.mirror_velocity[c][k];
         });
 }
 

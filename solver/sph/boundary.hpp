@@ -7,19 +7,16 @@
 #include "sph/clusters.hpp"
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace plumb {
 
-/// How a boundary particle's state follows from the fluid's at its mirror point:
-///     u = turn u_m + offset,    p = share p_m + pressure + rho_0 f . (x - x_m)
+/// How the state behind a wall follows from the fluid's at the mirror point:
+///     u = turn u_m + offset,    p = p_m + rho_0 f . (x - x_m)
 /// with the body force f: a wall holds against it.
 struct Continuation {
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     Vec3 offset = Vec3::Zero(); // [m/s]
-    double share = 1.0;
-    double pressure = 0.0; // [Pa]
 };
 
 /// A wall as the fluid meets it.
@@ -30,11 +27,14 @@ struct FluidWall {
 };
 
 struct BoundaryParticles {
-    VectorField x;                       // [m]
-    VectorField mirror;                  // [m]
-    VectorField velocity;                // with which x and mirror move [m/s]
-    VectorField x_listed, mirror_listed; // where they were when the lists were built [m]
-    std::vector<Continuation> rule;
+    VectorField x;                         // [m]
+    VectorField mirror;                    // [m]
+    VectorField velocity, mirror_velocity; // with which they move [m/s]
+    VectorField x_listed, mirror_listed;   // where they were when the lists were built [m]
+    std::vector<std::int32_t> side;        // index of the open side, -1 of walls; walls come first
+    std::vector<Continuation> rule;        // of walls
+    // of open sides: slow means at the mirror point of the velocity along the flow and of the pressure; NaN until known
+    Field<double> mean_speed, mean_pressure;
     double fastest = 0.0;   // greatest of the velocities [m/s]
     double travelled = 0.0; // way of the fastest one since the lists were built [m]
 
@@ -42,17 +42,30 @@ struct BoundaryParticles {
     std::vector<std::int32_t> member; // [lanes] boundary particle of each lane; the last group is filled up
     NeighbourLists near_mirror;
 
-    std::size_t size() const { return rule.size(); }
+    std::size_t size() const { return side.size(); }
 };
+
+/// One of them, to be appended.
+struct BoundaryParticle {
+    Vec3 x, mirror, velocity, mirror_velocity;
+    std::int32_t side = -1;
+    Continuation rule;
+};
+
+void append_boundary_particle(BoundaryParticles& boundary, int dimensions, const BoundaryParticle& particle);
+
+/// Keeps those numbered in `kept`, ascending.
+void keep_boundary_particles(BoundaryParticles& boundary, int dimensions, const std::vector<std::int32_t>& kept);
 
 struct SphFluid;
 
 /// Sorts the mirror points into groups and lists the fluid's particles near each; after the clusters were rebuilt.
 void list_mirrors(SphFluid& fluid);
 
-/// The state of the boundary particles from that of the fluid, into their records. The fluid's records, with images,
-/// are up to date; the images of the boundary particles are not, afterwards.
-void continue_state(SphFluid& fluid);
+/// The state of the boundary particles from that of the fluid, into their records, `since` [s] after the last time (for
+/// the means of open sides). The fluid's records, with images, are up to date; the images of the boundary particles are
+/// not, afterwards.
+void continue_state(SphFluid& fluid, double since);
 
 /// Moves boundary particles and mirror points by `dt` [s].
 void move_boundary(SphFluid& fluid, double dt);

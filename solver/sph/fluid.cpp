@@ -55,16 +55,25 @@ void rebuild_for(SphFluid& f, const VectorField& at) {
 
 } // namespace
 
-std::size_t particle_count(const SphFluid& fluid) {
-    return static_cast<std::size_t>(
-        std::count_if(fluid.id.begin(), fluid.id.end(), [](std::int32_t i) { return i >= 0; }));
+std::vector<std::int32_t> ordered_slots(const SphFluid& f) {
+    std::vector<std::int32_t> slot_of(static_cast<std::size_t>(f.next_id), -1), slots;
+    for (std::size_t k = 0; k < f.slots(); ++k)
+        if (f.id[k] >= 0) slot_of[static_cast<std::size_t>(f.id[k])] = static_cast<std::int32_t>(k);
+    slots.reserve(f.particles);
+    for (const std::int32_t slot : slot_of)
+        if (slot >= 0) slots.push_back(slot);
+    return slots;
 }
 
-std::vector<std::int32_t> slots_of_ids(const SphFluid& fluid) {
-    std::vector<std::int32_t> slot(particle_count(fluid));
-    for (std::size_t k = 0; k < fluid.slots(); ++k)
-        if (fluid.id[k] >= 0) slot[static_cast<std::size_t>(fluid.id[k])] = static_cast<std::int32_t>(k);
-    return slot;
+void append_particle(SphFluid& f, const Vec3& x, const Vec3& v, double rho) {
+    for_each_moving_field(f, [](Field<double>& field) { field.push_back(0.0); });
+    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {
+        f.x[c].back() = f.x_listed[c].back() = x[static_cast<Eigen::Index>(c)];
+        f.v[c].back() = v[static_cast<Eigen::Index>(c)];
+    }
+    f.rho.back() = rho;
+    f.id.push_back(f.next_id++);
+    ++f.particles;
 }
 
 void renew_lists(SphFluid& f) {

@@ -7,6 +7,7 @@
 #include "sph/clusters.hpp"
 #include "sph/equation_of_state.hpp"
 #include "sph/kernels.hpp"
+#include "sph/open_boundaries.hpp"
 #include "sph/pair_terms.hpp"
 
 #include <array>
@@ -44,9 +45,12 @@ struct SphFluid {
     Field<double> drho_spread;
     Field<double> completeness;   // 1 where particles are all around, about half of it at a free surface
     VectorField x_listed;         // where the particles were when the lists were built [m]
-    std::vector<std::int32_t> id; // order of creation; -1 in copies
+    std::vector<std::int32_t> id; // order of creation; -1 in copies and in particles that are about to vanish
+    std::int32_t next_id = 0;
+    std::size_t particles = 0; // number of them
     FluidClusters clusters;
     std::vector<FluidWall> walls;
+    std::vector<OpenSide> open_sides;
     BoundaryParticles boundary; // of walls and open sides
 
     std::size_t slots() const { return id.size(); }
@@ -54,11 +58,11 @@ struct SphFluid {
 
 inline TermScales term_scales(const SphFluid& f) { return {f.mass, f.viscosity, f.h, f.sound_speed, f.dimensions}; }
 
-/// Slot of each particle, by id.
-std::vector<std::int32_t> slots_of_ids(const SphFluid& fluid);
+/// Slots of the particles, ascending by id.
+std::vector<std::int32_t> ordered_slots(const SphFluid& fluid);
 
-/// Number of particles.
-std::size_t particle_count(const SphFluid& fluid);
+/// One more particle, in a slot at the end; it has lists from the next renewal on.
+void append_particle(SphFluid& fluid, const Vec3& x, const Vec3& v, double rho);
 
 /// Pressure of a density [Pa].
 inline double pressure(const SphFluid& f, double rho) {

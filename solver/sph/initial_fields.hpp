@@ -109,6 +109,33 @@ struct SoundWaveField {
     }
 };
 
+/// Developed laminar flow along x between plates: u = 3/2 mean (1 - (y - centre)^2/half_width^2), p falling to 0 at the
+/// far side of the box.
+struct ChannelField {
+    static constexpr std::string_view name = "channel";
+    static constexpr LawInfo info{"u_x = 3/2 mean (1 - (y - centre)^2/half_width^2), dp/dx = -3 mu mean/half_width^2",
+                                  "between plates across y", "Poiseuille 1840"};
+    double mean_speed, centre, half_width; // [m/s], [m], [m]
+    explicit ChannelField(Table& table)
+        : mean_speed(table.number("mean_speed", positive)), centre(table.number("centre")),
+          half_width(table.number("half_width", positive)) {}
+    FlowState operator()(const Vec3& x, const FluidNumbers& f) const {
+        const double s = (x[1] - centre) / half_width;
+        return {Vec3(1.5 * mean_speed * (1.0 - s * s), 0.0, 0.0),
+                3.0 * f.viscosity * mean_speed / (half_width * half_width) * (f.size[0] - x[0])};
+    }
+};
+
+/// The same velocity everywhere, p = 0.
+struct UniformField {
+    static constexpr std::string_view name = "uniform";
+    static constexpr LawInfo info{"u = velocity, p = 0", "any", "definition"};
+    Vec3 velocity; // [m/s]
+    explicit UniformField(Table& table)
+        : velocity(table.components("velocity", table.length("velocity") == 2 ? 2 : 3)) {}
+    FlowState operator()(const Vec3& /*x*/, const FluidNumbers& /*f*/) const { return {velocity, 0.0}; }
+};
+
 /// At rest under gravity below a level surface: p = 0 at the height `surface` and above, and below what the fluid's own
 /// compressibility makes of rho g d.
 struct HydrostaticField {
@@ -128,6 +155,6 @@ struct HydrostaticField {
 };
 
 using InitialField = std::variant<RestField, UniformPressureField, TaylorGreenField, TaylorGreenCube, ShearWaveField,
-                                  SoundWaveField, HydrostaticField>;
+                                  SoundWaveField, HydrostaticField, ChannelField, UniformField>;
 
 } // namespace plumb

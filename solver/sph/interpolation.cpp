@@ -55,7 +55,7 @@ Moments<d> moments(const SphFluid& f, const std::array<Pack, 3>& x, std::span<co
 constexpr double least_determinant = 1e-2; // of the linear fit's matrix, relative to a full neighbourhood's
 
 /// Value at the place of the linear function that fits lane `lane`.
-template <int d> void fit(const Moments<d>& m, int lane, double full, InterpolatedGroup& group) {
+template <int d> void fit(const Moments<d>& m, int lane, double full, double h, InterpolatedGroup& group) {
     using Matrix = Eigen::Matrix<double, d, d>;
     using Vector = Eigen::Matrix<double, d, 1>;
     const double zeroth = m.zeroth[lane];
@@ -77,8 +77,11 @@ template <int d> void fit(const Moments<d>& m, int lane, double full, Interpolat
         const double mean = m.value[k][lane] / zeroth;
         Vector slope;
         for (int c = 0; c < d; ++c) slope[c] = m.slope[k][static_cast<std::size_t>(c)][lane] - first[c] * mean;
-        const double value = mean - first.dot(inverse * slope) / zeroth;
+        const Vector gradient = inverse * slope; // times h
+        const double value = mean - first.dot(gradient) / zeroth;
         (k == d ? group.p : group.u[k])[lane] = value;
+        if (k == d)
+            for (int c = 0; c < d; ++c) group.p_slope[static_cast<std::size_t>(c)][lane] = gradient[c] / h;
     }
 }
 
@@ -87,7 +90,7 @@ InterpolatedGroup interpolate(const SphFluid& f, const std::array<Pack, 3>& plac
                               std::span<const std::int32_t> near) {
     const Moments<d> m = moments<KernelLaw, d>(f, places, near);
     InterpolatedGroup group;
-    for (int lane = 0; lane < pack_width; ++lane) fit<d>(m, lane, second_moment<KernelLaw>(d), group);
+    for (int lane = 0; lane < pack_width; ++lane) fit<d>(m, lane, second_moment<KernelLaw>(d), f.h, group);
     return group;
 }
 

@@ -10,9 +10,10 @@ namespace plumb {
 
 struct SphFluid;
 
-/// Velocity [m/s] and pressure [Pa] at eight places; `covered` is sum V W, 1 well inside the fluid and 0 far outside.
+/// Velocity [m/s], pressure [Pa] and its slope [Pa/m] at eight places; `covered` is sum V W, 1 well inside the fluid
+/// and 0 far outside.
 struct InterpolatedGroup {
-    std::array<Pack, 3> u{};
+    std::array<Pack, 3> u{}, p_slope{};
     Pack p{}, covered{};
 };
 

@@ -94,20 +94,15 @@ Continuation continuation(const std::vector<Behind>& behind) {
     return rule;
 }
 
-void append(BoundaryParticles& boundary, int dimensions, const Vec3& x, const std::vector<Behind>& behind) {
+BoundaryParticle wall_particle(const SphFluid& f, const Vec3& x, const std::vector<Behind>& behind) {
     Vec3 mirror = x, velocity = Vec3::Zero();
     for (const Behind& b : behind) {
         mirror += 2.0 * b.depth * b.normal;
         velocity += displacement_velocity(*b.wall) / static_cast<double>(behind.size());
     }
-    for (int c = 0; c < dimensions; ++c) {
-        const auto axis = static_cast<std::size_t>(c);
-        boundary.x[axis].push_back(x[c]);
-        boundary.mirror[axis].push_back(mirror[c]);
-        boundary.velocity[axis].push_back(velocity[c]);
-    }
-    boundary.rule.push_back(continuation(behind));
-    boundary.fastest = std::max(boundary.fastest, velocity.norm());
+    for (const OpenSide& side : f.open_sides) // beside a buffer there is no fluid: that in front of the plane will do
+        if (side.distance(mirror) < 0.0) mirror = side.reflected(mirror);
+    return {x, mirror, velocity, velocity, -1, continuation(behind)};
 }
 
 } // namespace
@@ -121,10 +116,7 @@ Penetration penetration(const std::vector<FluidWall>& walls, const Vec3& x, doub
     return deepest;
 }
 
-void line_walls(SphFluid& f, const std::vector<FluidWall>& walls) {
-    if (walls.empty()) return;
-    const double deep = f.clusters.reach + f.clusters.skin;
-    const auto margin = static_cast<std::int64_t>(std::ceil(deep / f.spacing)) + 1;
+void for_each_cell(const SphFluid& f, std::int64_t margin, const std::function<void(const Vec3&)>& visit) {
     std::array<std::int64_t, 3> first{0, 0, 0}, last{1, 1, 1};
     for (int c = 0; c < f.dimensions; ++c) {
         const auto axis = static_cast<std::size_t>(c);
@@ -138,12 +130,20 @@ void line_walls(SphFluid& f, const std::vector<FluidWall>& walls) {
                 Vec3 x(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
                 x = (x + Vec3::Constant(0.5)) * f.spacing;
                 if (f.dimensions == 2) x[2] = 0.0;
-                const std::vector<Behind> behind = walls_before(walls, x);
-                if (behind.empty()) continue;
-                Vec3 to_surface = Vec3::Zero();
-                for (const Behind& b : behind) to_surface += b.depth * b.normal;
-                if (to_surface.norm() < deep) append(f.boundary, f.dimensions, x, behind);
+                visit(x);
             }
+}
+
+void line_walls(SphFluid& f) {
+    if (f.walls.empty()) return;
+    const double deep = f.clusters.reach + f.clusters.skin;
+    for_each_cell(f, static_cast<std::int64_t>(std::ceil(deep / f.spacing)) + 1, [&](const Vec3& x) {
+        const std::vector<Behind> behind = walls_before(f.walls, x);
+        if (behind.empty()) return;
+        Vec3 to_surface = Vec3::Zero();
+        for (const Behind& b : behind) to_surface += b.depth * b.normal;
+        if (to_surface.norm() < deep) append_boundary_particle(f.boundary, f.dimensions, wall_particle(f, x, behind));
+    });
 }
 
 } // namespace plumb

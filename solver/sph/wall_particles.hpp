@@ -4,9 +4,14 @@
 #include "core/walls.hpp"
 #include "sph/fluid.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace plumb {
+
+/// Calls visit(x) for the middle of every cell of the fluid's lattice, along sides that are not periodic `margin` cells
+/// beyond the box.
+void for_each_cell(const SphFluid& fluid, std::int64_t margin, const std::function<void(const Vec3&)>& visit);
 
 /// True behind any of the walls, where they are at t = 0. Meshes have to be closed.
 bool is_solid(const std::vector<FluidWall>& walls, const Vec3& x);
@@ -14,7 +19,7 @@ bool is_solid(const std::vector<FluidWall>& walls, const Vec3& x);
 /// Lines the walls with boundary particles as deep as the kernel reaches: the lattice of fill_box goes on into the
 /// wall. A particle's mirror point is its reflection in every wall it lies behind; there the fluid's state is continued
 /// antisymmetrically (no slip) or symmetrically (free slip, with the normal component turned round).
-void line_walls(SphFluid& fluid, const std::vector<FluidWall>& walls);
+void line_walls(SphFluid& fluid);
 
 /// How deep a particle lies behind a wall at `time` [s]; 0 in front of all. A mesh is asked only within `near` [m] of
 /// it.

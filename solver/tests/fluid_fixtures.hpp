@@ -82,7 +82,8 @@ inline void put(SphFluid& f, const Vec3& x, const Vec3& v, double rho) {
         f.a[k].push_back(0.0), f.x_listed[k].push_back(x[c]);
     }
     f.rho.push_back(rho), f.drho.push_back(0.0);
-    f.id.push_back(static_cast<std::int32_t>(f.id.size()));
+    f.id.push_back(f.next_id++);
+    ++f.particles;
 }
 
 /// Fills a box of n spacings with a lattice jittered by up to `jitter` spacings.
@@ -115,7 +116,7 @@ inline Vec3 entry(const SphFluid& f, const VectorField& field, std::size_t k) {
 
 /// Slot of the particle `id`.
 inline std::vector<std::size_t> slots_by_id(const SphFluid& f) {
-    const std::vector<std::int32_t> slots = slots_of_ids(f);
+    const std::vector<std::int32_t> slots = ordered_slots(f);
     return {slots.begin(), slots.end()};
 }
 

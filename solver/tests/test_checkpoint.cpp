@@ -181,7 +181,7 @@ std::vector<std::uint64_t> bits(const Simulation& s) {
         put(g.radius[at]), put(g.mass[at]), put(g.mobility[at]);
     }
     if (!s.sph) return all;
-    for (const std::int32_t slot : slots_of_ids(*s.sph)) {
+    for (const std::int32_t slot : ordered_slots(*s.sph)) {
         const auto at = static_cast<std::size_t>(slot);
         for (std::size_t c = 0; c < 2; ++c) put(s.sph->x[c][at]), put(s.sph->v[c][at]), put(s.sph->a[c][at]);
         put(s.sph->rho[at]), put(s.sph->drho[at]);

@@ -97,7 +97,7 @@ TEST(SphScene, NumbersAreThoseOfTheTable) {
         Bench bench(scene_text(d));
         const SphFluid& f = bench.fluid();
         EXPECT_EQ(f.dimensions, d);
-        EXPECT_EQ(particle_count(f), d == 2 ? 320U : 3840U);
+        EXPECT_EQ(f.particles, d == 2 ? 320U : 3840U);
         EXPECT_NEAR(f.h, 0.075, 1e-15);
         EXPECT_NEAR(f.mass, d == 2 ? 2.5 : 0.125, 1e-12);
         EXPECT_NEAR(f.clusters.reach, 0.15, 1e-15);

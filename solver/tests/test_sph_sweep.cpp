@@ -184,7 +184,7 @@ TEST(SphSweep, ForcesConserveMomentum) {
             set_viscosity(f, law, law.name == "none" ? 0.0 : 3.0);
             set_extras(f, all_extras);
             start(f);
-            const auto n = static_cast<double>(particle_count(f));
+            const auto n = static_cast<double>(f.particles);
             EXPECT_LT((sum_of(f, f.a) - n * f.body_force).norm(), 1e-13 * n * largest(f, f.a));
         });
 }

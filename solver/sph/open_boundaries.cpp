@@ -1,0 +1,109 @@
+#include "sph/open_boundaries.hpp"
+
+#include "sph/wall_particles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace plumb {
+
+namespace {
+
+std::int64_t buffer_layers(const SphFluid& f) {
+    return static_cast<std::int64_t>(std::ceil((f.clusters.reach + f.clusters.skin) / f.spacing));
+}
+
+double buffer_depth(const SphFluid& f) { return static_cast<double>(buffer_layers(f)) * f.spacing; }
+
+Vec3 at(const VectorField& field, std::size_t k, int dimensions) {
+    Vec3 x = Vec3::Zero();
+    for (int c = 0; c < dimensions; ++c) x[c] = field[static_cast<std::size_t>(c)][k];
+    return x;
+}
+
+void put(VectorField& field, std::size_t k, const Vec3& x, int dimensions) {
+    for (int c = 0; c < dimensions; ++c) field[static_cast<std::size_t>(c)][k] = x[c];
+}
+
+Vec3 turned(const OpenSide& side, const Vec3& v) { return v - 2.0 * v.dot(side.normal) * side.normal; }
+
+void append(SphFluid& f, std::size_t side, const Vec3& x, const Vec3& velocity) {
+    append_boundary_particle(f.boundary, f.dimensions,
+                             {x, f.open_sides[side].reflected(x), velocity, turned(f.open_sides[side], velocity),
+                              static_cast<std::int32_t>(side), Continuation{}});
+}
+
+/// Particles of inlet buffers that have come in leave a copy of themselves in the fluid and go back to the far end.
+void let_in(SphFluid& f) {
+    BoundaryParticles& b = f.boundary;
+    const double depth = buffer_depth(f);
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        if (b.side[k] < 0 || !f.open_sides[static_cast<std::size_t>(b.side[k])].is_inlet()) continue;
+        const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
+        Vec3 x = at(b.x, k, f.dimensions);
+        if (side.distance(x) < 0.0) continue;
+        const FluidRecord& state = f.clusters.records[static_cast<std::size_t>(f.clusters.record_of_passive[k])];
+        append_particle(f, x, at(b.velocity, k, f.dimensions), f.mass / state.volume);
+        x -= depth * side.normal;
+        put(b.x, k, x, f.dimensions);
+        put(b.mirror, k, side.reflected(x), f.dimensions);
+    }
+}
+
+/// Fluid behind an outlet becomes part of its buffer.
+void let_out(SphFluid& f) {
+    for (std::size_t s = 0; s < f.open_sides.size(); ++s) {
+        if (f.open_sides[s].is_inlet()) continue;
+        std::vector<std::pair<std::int32_t, std::size_t>> leaving; // by id: the order of slots must not matter
+        for (std::size_t k = 0; k < f.slots(); ++k)
+            if (f.id[k] >= 0 && f.open_sides[s].distance(at(f.x, k, f.dimensions)) < 0.0)
+                leaving.emplace_back(f.id[k], k);
+        std::sort(leaving.begin(), leaving.end());
+        for (const auto& [id, k] : leaving) {
+            append(f, s, at(f.x, k, f.dimensions), at(f.v, k, f.dimensions));
+            f.id[k] = -1; // vanishes with the next order of the slots
+            --f.particles;
+        }
+    }
+}
+
+/// Buffer particles of outlets that nobody reaches any more.
+void forget_far_ones(SphFluid& f) {
+    const double depth = buffer_depth(f);
+    std::vector<std::int32_t> kept;
+    for (std::size_t k = 0; k < f.boundary.size(); ++k) {
+        const std::int32_t s = f.boundary.side[k];
+        const bool far = s >= 0 && !f.open_sides[static_cast<std::size_t>(s)].is_inlet() &&
+                         f.open_sides[static_cast<std::size_t>(s)].distance(at(f.boundary.x, k, f.dimensions)) < -depth;
+        if (!far) kept.push_back(static_cast<std::int32_t>(k));
+    }
+    if (kept.size() < f.boundary.size()) keep_boundary_particles(f.boundary, f.dimensions, kept);
+}
+
+} // namespace
+
+bool is_outside(const std::vector<OpenSide>& sides, const Vec3& x) {
+    return std::any_of(sides.begin(), sides.end(), [&](const OpenSide& s) { return s.distance(x) < 0.0; });
+}
+
+void fill_buffers(SphFluid& f) {
+    const double depth = buffer_depth(f);
+    for (std::size_t s = 0; s < f.open_sides.size(); ++s) {
+        const OpenSide& side = f.open_sides[s];
+        for_each_cell(f, buffer_layers(f) + 1, [&](const Vec3& x) {
+            const double distance = side.distance(x);
+            if (distance >= 0.0 || distance < -depth || is_solid(f.walls, x)) return;
+            append(f, s, x, side.is_inlet() ? Vec3(side.inflow(x, f.dimensions) * side.normal) : Vec3(Vec3::Zero()));
+        });
+    }
+}
+
+void pass_open_sides(SphFluid& f) {
+    if (f.open_sides.empty()) return;
+    let_in(f);
+    let_out(f);
+    forget_far_ones(f);
+}
+
+} // namespace plumb

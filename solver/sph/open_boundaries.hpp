@@ -1,0 +1,76 @@
+// Open sides: planes through which the fluid comes in with a given profile, or leaves at a given pressure.
+//
+// Behind the plane is a buffer of boundary particles as deep as the kernel reaches. They move with their velocity; one
+// that crosses an inlet becomes fluid and is replaced at the far end of the buffer, fluid that crosses an outlet
+// becomes part of its buffer. Sound leaves: the state in the buffer is a slow mean plus the part of the deviation from
+// it that the outgoing characteristic carries (after Lastiwka, Basa & Quinlan 2009, Int. J. Numer. Meth. Fluids 61,
+// 709).
+#pragma once
+
+#include "core/laws.hpp"
+#include "core/vec.hpp"
+
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace plumb {
+
+struct SphFluid;
+
+/// The same speed everywhere.
+struct UniformProfile {
+    static constexpr std::string_view name = "uniform";
+    static constexpr LawInfo info{"u = speed", "slip walls or none", "definition"};
+    double speed; // [m/s]
+    explicit UniformProfile(Table& table) : speed(table.number("speed", positive)) {}
+    double operator()(double /*from_axis*/, int /*dimensions*/) const { return speed; }
+};
+
+/// Developed laminar flow between plates (in the plane) or in a round pipe around the side's point.
+struct ParabolicProfile {
+    static constexpr std::string_view name = "parabolic";
+    static constexpr LawInfo info{"u = 3/2 (plane) or 2 (pipe) mean (1 - s^2/radius^2), s from the axis",
+                                  "0 beyond the radius", "Poiseuille 1840"};
+    double mean_speed, radius; // [m/s], [m]: half the width of a plane channel
+    explicit ParabolicProfile(Table& table)
+        : mean_speed(table.number("mean_speed", positive)), radius(table.number("radius", positive)) {}
+    double operator()(double from_axis, int dimensions) const {
+        const double s = from_axis / radius;
+        return s < 1.0 ? (dimensions == 2 ? 1.5 : 2.0) * mean_speed * (1.0 - s * s) : 0.0;
+    }
+};
+
+using InletProfile = std::variant<UniformProfile, ParabolicProfile>;
+
+/// A plane across the flow, at rest.
+struct OpenSide {
+    std::string name;
+    Vec3 point;                          // on the plane, on the axis of the flow [m]
+    Vec3 normal;                         // unit vector into the fluid
+    double averaging_time = 0.0;         // of the slow mean [s]
+    std::optional<InletProfile> profile; // of an inlet
+    double pressure = 0.0;               // of an outlet [Pa]
+
+    bool is_inlet() const { return profile.has_value(); }
+    /// Distance in front of the plane; negative in the buffer [m].
+    double distance(const Vec3& x) const { return (x - point).dot(normal); }
+    Vec3 reflected(const Vec3& x) const { return x - 2.0 * distance(x) * normal; }
+    /// Speed into the domain that an inlet prescribes at x [m/s].
+    double inflow(const Vec3& x, int dimensions) const {
+        const Vec3 across = x - point - distance(x) * normal;
+        return std::visit([&](const auto& law) { return law(across.norm(), dimensions); }, *profile);
+    }
+};
+
+/// True behind any of the sides.
+bool is_outside(const std::vector<OpenSide>& sides, const Vec3& x);
+
+/// Fills the buffers on the lattice of the fluid, outside the walls.
+void fill_buffers(SphFluid& fluid);
+
+/// Particles that have crossed a plane change sides. Slots and boundary particles appear and vanish: the lists have to
+/// be renewed.
+void pass_open_sides(SphFluid& fluid);
+
+} // namespace plumb
