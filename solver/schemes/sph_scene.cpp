@@ -16,7 +16,7 @@ namespace {
 
 // Shares of the three times: Morris, Fox & Zhu 1997, eq. 20 (0.25 h/c), of the stable step of the viscous operator, and
 // Monaghan 1992 (0.25 sqrt(h/f)).
-constexpr double acoustic_share = 0.25, viscous_share = 0.8, force_share = 0.25;
+constexpr double acoustic_share = 0.25, viscous_share = 0.6, force_share = 0.25;
 
 // Skin of the neighbour lists in spacings: wider ones are renewed less often but hold more pairs out of reach.
 constexpr double skin_in_spacings = 0.25;
@@ -231,7 +231,7 @@ std::vector<StepLimit> fluid_limits(const SphFluid& f) {
     const double nu = f.viscosity / f.density, force = f.body_force.norm();
     return {{"acoustic", acoustic_share * f.h / f.sound_speed, "0.25 h/c"},
             {"viscous", nu > 0.0 ? viscous_share * f.h * f.h / (nu * viscous_rate(f) * (1.0 + f.memory)) : none,
-             "0.8 over the greatest rate of the viscous operator"},
+             "0.6 over the greatest rate of the viscous operator on a lattice"},
             {"force", force > 0.0 ? force_share * std::sqrt(f.h / force) : none, "0.25 sqrt(h/f)"}};
 }
 

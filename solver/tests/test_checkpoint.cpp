@@ -114,6 +114,64 @@ quantity = "grain_fluid_force"
 axis = "x"
 )";
 
+/// A channel with open ends and a roof that comes down: boundary particles that move, appear and vanish.
+constexpr const char* passing = R"(
+[domain]
+size = [1.0, 0.8]
+periodic = [false, false]
+gravity = [0.0, 0.0]
+[fluid]
+method = "sph"
+density = 1000.0
+viscosity = 10.0
+spacing = 0.05
+smoothing = 1.5
+kernel = "wendland_c2"
+equation_of_state = "linear"
+sound_speed = 20.0
+pressure = "full"
+viscous_term = "morris"
+density_diffusion = 0.1
+shifting = 1.0
+reference_velocity = 1.0
+arrange = {law = "jittered", jitter = 0.1, seed = 1}
+initial = {law = "channel", mean_speed = 1.0, centre = 0.4, half_width = 0.4}
+[[wall]]
+name = "floor"
+shape = "plane"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+slip = "no_slip"
+[[wall]]
+name = "roof"
+shape = "plane"
+point = [0.0, 0.8]
+normal = [0.0, -1.0]
+slip = "no_slip"
+velocity = [0.0, -0.1]
+[[inlet]]
+name = "in"
+point = [0.0, 0.4]
+normal = [1.0, 0.0]
+averaging_time = 0.1
+profile = {law = "parabolic", mean_speed = 1.0, radius = 0.4}
+[[outlet]]
+name = "out"
+point = [1.0, 0.4]
+normal = [-1.0, 0.0]
+averaging_time = 0.1
+pressure = 0.0
+[time]
+end = 1.0
+output_interval = 0.1
+integrator = "damped_midpoint"
+step = 2e-4
+[[probe]]
+name = "mean"
+quantity = "fluid_mean_velocity"
+axis = "x"
+)";
+
 /// Smoothed particles with every term, jittered so that lists are renewed often.
 constexpr const char* flowing = R"(
 [domain]
@@ -181,6 +239,9 @@ std::vector<std::uint64_t> bits(const Simulation& s) {
         put(g.radius[at]), put(g.mass[at]), put(g.mobility[at]);
     }
     if (!s.sph) return all;
+    for (const auto field : {&BoundaryParticles::x, &BoundaryParticles::mirror})
+        for (std::size_t c = 0; c < 2; ++c)
+            for (const double x : (s.sph->boundary.*field)[c]) put(x);
     for (const std::int32_t slot : ordered_slots(*s.sph)) {
         const auto at = static_cast<std::size_t>(slot);
         for (std::size_t c = 0; c < 2; ++c) put(s.sph->x[c][at]), put(s.sph->v[c][at]), put(s.sph->a[c][at]);
@@ -225,7 +286,7 @@ TEST_P(Checkpoint, RunsAreTheSameForAnyNumberOfThreads) {
     EXPECT_TRUE(found.same) << found.text;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint, testing::Values(dry, wet, flowing));
+INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint, testing::Values(dry, wet, flowing, passing));
 
 std::string complaint(const std::string& path) {
     try {
