@@ -44,7 +44,7 @@ def test_sources_close_the_equations(divergence, t):
     np.testing.assert_allclose(flow.divergence(x, t), div, atol=1e-6)
     np.testing.assert_allclose(carried(flow.density), -rho * div + flow.density_source(x, t), atol=1e-4)
     pressure = np.stack([stencil(flow.pressure, x, t, d, 1) for d in (0, 1)], axis=1) / rho[:, None]
-    viscous = NU * (stencil(flow.velocity, x, t, 0, 2) + stencil(flow.velocity, x, t, 1, 2))
+    viscous = RHO * NU / rho[:, None] * (stencil(flow.velocity, x, t, 0, 2) + stencil(flow.velocity, x, t, 1, 2))
     np.testing.assert_allclose(carried(flow.velocity), -pressure + viscous + flow.momentum_source(x, t), atol=2e-5)
     np.testing.assert_allclose(tait.pressure(rho, RHO, C), flow.pressure(x, t), rtol=1e-10, atol=1e-8)
     if divergence == 0.0:
@@ -97,7 +97,7 @@ def test_sources_against_symbolic_derivation():
                             + sympy.sin(k * speed * t) * sympy.sin(k * x + 2 * k * y) / 2)
     rho = rho_0 * (1 + 7 * p / (rho_0 * c_0**2)) ** sympy.Rational(1, 7)
     carried = lambda f: f.diff(t) + u * f.diff(x) + v * f.diff(y)  # noqa: E731
-    momentum = [carried(f) + p.diff(q) / rho - nu * (f.diff(x, 2) + f.diff(y, 2)) for f, q in ((u, x), (v, y))]
+    momentum = [carried(f) + p.diff(q) / rho - rho_0 * nu / rho * (f.diff(x, 2) + f.diff(y, 2)) for f, q in ((u, x), (v, y))]
     formulas = sympy.lambdify((x, y, t), [carried(rho) + rho * (u.diff(x) + v.diff(y)), *momentum])
     flow, _ = made(0.3)
     for place in ((0.11, 0.52), (0.63, 0.07), (0.4, 0.33)):

@@ -103,6 +103,7 @@ void advance_fluid(SphFluid& f, double dt, std::int64_t step) {
     if (drift(f, 0.5 * dt)) renew_lists(f);
     fill_records(f, 0.5 * dt);
     evaluate_terms(f);
+    add_sources(f, (static_cast<double>(step) - 0.5) * dt);
     correct(f, dt, step);
 }
 
@@ -112,6 +113,7 @@ void start(SphFluid& f) {
     renew_lists(f);
     fill_records(f, 0.0);
     evaluate_terms(f);
+    add_sources(f, 0.0);
 }
 
 } // namespace plumb

@@ -9,7 +9,7 @@ namespace plumb {
 
 /// One step of the midpoint rule with a single evaluation:
 ///     x* = x + dt/2 v      v* = v + dt/2 a_before      rho* = rho + dt/2 rho'_before
-///     a, rho' = terms(x*, v*, rho*)
+///     a, rho' = terms(x*, v*, rho*) + sources(x*, t + dt/2)
 ///     v <- v + dt a        rho <- rho + dt rho'        x <- x* + dt/2 v
 /// Second order: the predicted v* and rho* are off by O(dt^2). Throws Diverged in the step in which a particle's speed
 /// or density stops being finite, its speed passes the speed of sound, or its density changes by half.

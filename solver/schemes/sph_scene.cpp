@@ -52,10 +52,14 @@ ViscousTerm read_viscous_term(Table& table, const TermScales& scales) {
 void read_models(Table& table, SphFluid& f) {
     f.kernel = make_family<Kernel>(table.law("kernel"));
     f.equation_of_state = make_family<EquationOfState>(table.law("equation_of_state"));
+    f.operators = make_family<Operators>(table.law("operators"));
     f.viscous_term = read_viscous_term(table, term_scales(f));
     if (std::holds_alternative<Inviscid>(f.viscous_term) != (f.viscosity == 0.0))
         table.fail("viscous_term", fmt::format("\"{}\" does not go with a viscosity of {} Pa s",
                                                law_name(f.viscous_term), f.viscosity));
+    if (std::holds_alternative<DoubleGradient>(f.viscous_term) &&
+        !std::holds_alternative<CorrectedOperators>(f.operators))
+        table.fail("viscous_term", "\"double_gradient\" needs operators = \"corrected\"");
     const double delta = table.number_or("density_diffusion", 0.0, non_negative);
     const double alpha = table.number_or("artificial_viscosity", 0.0, non_negative);
     f.extras.diffusion = 2.0 * delta * f.h * f.sound_speed;
@@ -76,6 +80,21 @@ void read_forces(Table& table, SphFluid& f) {
     const bool full = table.choice("pressure", {"full", "dynamic"}) == "full";
     f.body_force = full ? f.domain.gravity : Vec3::Zero();
     if (table.has("body_force")) f.body_force += table.components("body_force", f.dimensions);
+}
+
+/// The manufactured flow repeats itself along x and y after the same length.
+void check_manufactured_box(const Table& table, const char* key, const Vec3& size) {
+    if (size[0] != size[1])
+        table.fail(key,
+                   fmt::format("\"manufactured\" needs a square box; this one measures {} m along x and {} m along y",
+                               size[0], size[1]));
+}
+
+/// Sources, if there are any.
+void read_source(Table& table, SphFluid& f) {
+    if (!table.has("source")) return;
+    f.source = make_family<Source>(table.law("source"));
+    if (std::holds_alternative<ManufacturedSource>(f.source)) check_manufactured_box(table, "source", f.domain.size);
 }
 
 /// The box must hold a whole number of spacings along every axis, and no more particles than an id can count.
@@ -99,7 +118,8 @@ void set_initial_state(Table& table, SphFluid& f) {
     check_spacing(table, f);
     fill_box(f, jitter, seed);
     const auto initial = make_family<InitialField>(table.law("initial"));
-    const FluidNumbers numbers{f.domain.size, f.density, f.sound_speed, f.viscosity};
+    if (std::holds_alternative<ManufacturedField>(initial)) check_manufactured_box(table, "initial", f.domain.size);
+    const FluidNumbers numbers = fluid_numbers(f);
     for (std::size_t k = 0; k < f.slots(); ++k) {
         Vec3 x = Vec3::Zero();
         for (int c = 0; c < f.dimensions; ++c) x[c] = f.x[static_cast<std::size_t>(c)][k];
@@ -120,6 +140,7 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain) {
     read_numbers(table, f);
     read_models(table, f);
     read_forces(table, f);
+    read_source(table, f);
     for (int c = 0; c < f.dimensions; ++c)
         if (!domain.periodic[static_cast<std::size_t>(c)])
             table.fail("method", "\"sph\" has no walls yet: every side of the box must be periodic");
@@ -129,28 +150,39 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain) {
 
 namespace {
 
-/// Greatest rate at which the viscous sum damps anything, times h^2/nu: factor * integral of -W'/r, which the shortest
-/// waves feel (for Morris' term and Wendland C2: 7). The midpoint rule with a predicted velocity is stable up to a rate
-/// of 1/step (verification/sound_wave).
-double viscous_rate(const SphFluid& f) {
+/// Integral of -W' r^(power + 1 - d) over the space, per h^(power - d): power d for -W', d - 1 for -W'/r.
+double slope_integral(const SphFluid& f, int power) {
     const int d = f.dimensions;
-    const double integral = std::visit(
-        [d](const auto& kernel) {
+    return std::visit(
+        [d, power](const auto& kernel) {
             using Law = std::decay_t<decltype(kernel)>;
             constexpr int n = 2000; // midpoint rule
             double sum = 0.0;
             for (int k = 0; k < n; ++k) {
                 const double q = Law::support * (k + 0.5) / n;
-                sum -= Law::f(q) * std::pow(q, d - 1) * Law::support / n;
+                sum -= Law::f(q) * std::pow(q, power) * Law::support / n;
             }
             return Law::sigma(d) * (d == 2 ? 2.0 : 4.0) * std::numbers::pi * sum;
         },
         f.kernel);
+}
+
+/// Greatest rate at which the viscous sum damps anything, times h^2/nu: factor * integral of -W'/r, which the shortest
+/// waves feel (for Morris' term and Wendland C2: 7). A gradient taken twice damps no wave faster than the square of the
+/// integral of |dW/dx|. The midpoint rule with a predicted velocity is stable up to a rate of 1/step
+/// (verification/sound_wave).
+double viscous_rate(const SphFluid& f) {
+    const int d = f.dimensions;
+    if (std::holds_alternative<DoubleGradient>(f.viscous_term)) { // the mean of |cos| is 2/pi, in space 1/2
+        const double gradient = (d == 2 ? 2.0 / std::numbers::pi : 0.5) * slope_integral(f, d);
+        return gradient * gradient;
+    }
+    const double integral = slope_integral(f, d - 1);
     const double per_viscosity = f.mass * f.mass / f.viscosity;
     const double factor = std::visit(
         [&](const auto& law) {
             using Law = std::decay_t<decltype(law)>;
-            if constexpr (std::is_same_v<Law, Inviscid>)
+            if constexpr (std::is_same_v<Law, Inviscid> || std::is_same_v<Law, DoubleGradient>)
                 return 0.0;
             else if constexpr (std::is_same_v<Law, Morris>)
                 return law.coefficient * per_viscosity; // 2

@@ -23,6 +23,10 @@ struct Tait {
     double density(double p, double rho_0, double c) const {
         return rho_0 * std::pow(1.0 + gamma * p / (rho_0 * c * c), 1.0 / gamma);
     }
+    double slope(double rho, double rho_0, double c) const { // dp/drho [m2/s2]
+        const double s = rho / rho_0;
+        return c * c * (s * s * s) * (s * s * s);
+    }
 };
 
 /// p = c^2 (rho - rho_0).
@@ -32,6 +36,7 @@ struct LinearState {
                                   "Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214"};
     double pressure(double rho, double rho_0, double c) const { return c * c * (rho - rho_0); }
     double density(double p, double rho_0, double c) const { return rho_0 + p / (c * c); }
+    double slope(double /*rho*/, double /*rho_0*/, double c) const { return c * c; } // dp/drho [m2/s2]
 };
 
 using EquationOfState = std::variant<Tait, LinearState>;

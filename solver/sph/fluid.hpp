@@ -4,9 +4,11 @@
 #include "core/domain.hpp"
 #include "core/field.hpp"
 #include "sph/clusters.hpp"
+#include "sph/corrected_operators.hpp"
 #include "sph/equation_of_state.hpp"
 #include "sph/kernels.hpp"
 #include "sph/pair_terms.hpp"
+#include "sph/sources.hpp"
 
 #include <array>
 #include <cstdint>
@@ -28,9 +30,11 @@ struct SphFluid {
     double sound_speed = 0.0;       // c [m/s]
     double mass = 0.0;              // of a particle: rho_0 dx^d [kg], [kg/m] in the plane
     Kernel kernel;
+    Operators operators;
     EquationOfState equation_of_state;
     ViscousTerm viscous_term;
     Extras extras;
+    Source source;
     double shifting = 0.0; // diffusivity of positions [m2/s], 0 without
 
     // what changes in time
@@ -42,9 +46,13 @@ struct SphFluid {
     VectorField x_listed;         // where the particles were when the lists were built [m]
     std::vector<std::int32_t> id; // order of creation; -1 in copies
     FluidClusters clusters;
+    CorrectedFields corrected; // of the last evaluation; empty with plain operators
 
     std::size_t slots() const { return id.size(); }
 };
+
+/// Numbers that initial fields and sources may need.
+inline FluidNumbers fluid_numbers(const SphFluid& f) { return {f.domain.size, f.density, f.sound_speed, f.viscosity}; }
 
 inline TermScales term_scales(const SphFluid& f) { return {f.mass, f.viscosity, f.h, f.sound_speed, f.dimensions}; }
 
@@ -69,5 +77,8 @@ void restore_lists(SphFluid& fluid);
 
 /// Accelerations and density rates of all particles for the state in the records.
 void evaluate_terms(SphFluid& fluid);
+
+/// Adds the scene's sources at a time [s] to the rates, at the particles' present places.
+void add_sources(SphFluid& fluid, double time);
 
 } // namespace plumb

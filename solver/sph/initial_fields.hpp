@@ -4,27 +4,13 @@
 #pragma once
 
 #include "core/laws.hpp"
-#include "core/vec.hpp"
+#include "sph/manufactured_flow.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <variant>
 
 namespace plumb {
-
-/// Velocity [m/s] and pressure [Pa] at one place.
-struct FlowState {
-    Vec3 u = Vec3::Zero();
-    double p = 0.0;
-};
-
-/// What an initial field may need to know of the fluid.
-struct FluidNumbers {
-    Vec3 size;          // of the box [m]
-    double density;     // [kg/m3]
-    double sound_speed; // [m/s]
-    double viscosity;   // dynamic [Pa s]
-};
 
 namespace detail {
 inline double wave_number(const Vec3& size, int axis, double waves) {
@@ -97,6 +83,20 @@ struct SoundWaveField {
     }
 };
 
-using InitialField = std::variant<RestField, TaylorGreenField, TaylorGreenCube, ShearWaveField, SoundWaveField>;
+/// The flow of the manufactured solution (manufactured_flow.hpp) at t = 0.
+struct ManufacturedField {
+    static constexpr std::string_view name = "manufactured";
+    static constexpr LawInfo info{"u = curl psi + d grad chi, psi, chi and p sums of waves at t = 0",
+                                  "square box in the plane", "verification/mms, eq. 2"};
+    ManufacturedFlow flow;
+    explicit ManufacturedField(Table& table) : flow(table) {}
+    FlowState operator()(const Vec3& x, const FluidNumbers& f) const {
+        const ManufacturedFlow::State s = flow.at(x, 0.0, f);
+        return {s.v, s.p};
+    }
+};
+
+using InitialField =
+    std::variant<RestField, TaylorGreenField, TaylorGreenCube, ShearWaveField, SoundWaveField, ManufacturedField>;
 
 } // namespace plumb

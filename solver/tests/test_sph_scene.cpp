@@ -30,7 +30,8 @@ std::string scene_text(int dimensions, const Keys& fluid_changes = {}, const Key
                {"smoothing", "1.5"},           {"sound_speed", "20.0"},
                {"kernel", "\"wendland_c2\""},  {"equation_of_state", "\"tait\""},
                {"viscous_term", "\"morris\""}, {"pressure", "\"full\""},
-               {"arrange", "\"lattice\""},     {"initial", "\"rest\""}};
+               {"arrange", "\"lattice\""},     {"initial", "\"rest\""},
+               {"operators", "\"plain\""}};
     for (const auto& [key, value] : domain_changes) domain[key] = value;
     for (const auto& [key, value] : fluid_changes) fluid[key] = value;
     std::string text = "[domain]\n";
@@ -129,7 +130,7 @@ TEST(SphScene, LawsAndExtras) {
         Bench bench(scene_text(2, {{"equation_of_state", '"' + std::string(law.name) + '"'}}));
         EXPECT_EQ(law_name(bench.fluid().equation_of_state), law.name);
     });
-    for_each_law<ViscousTerm>([](auto law) {
+    for_each_law<PairViscousTerm>([](auto law) {
         const Keys keys{{"viscous_term", '"' + std::string(law.name) + '"'},
                         {"viscosity", law.name == "none" ? "0.0" : "0.1"}};
         Bench bench(scene_text(3, keys));

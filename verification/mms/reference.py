@@ -50,10 +50,10 @@ class Manufactured:
     def __init__(self, scene):
         fluid, initial = scene["fluid"], scene["fluid"]["initial"]
         self.speed, self.rho, self.c = initial["speed"], fluid["density"], fluid["sound_speed"]
-        self.nu = fluid["viscosity"] / fluid["density"]
+        self.viscosity = fluid["viscosity"]
         self.k = 2.0 * math.pi / scene["domain"]["size"][0]
         self.omega = self.k * self.speed  # one period of the swing takes L/U
-        share = initial.get("divergence", 0.0)
+        share = initial["divergence"]
         self.u_terms = _along(STREAM, 1) + _scaled(_along(POTENTIAL, 0), share)
         self.v_terms = _scaled(_along(STREAM, 0), -1.0) + _scaled(_along(POTENTIAL, 1), share)
 
@@ -96,13 +96,13 @@ class Manufactured:
         return (rate + carried) / tait.sound_speed(rho, self.rho, self.c) ** 2 + rho * self.divergence(x, t)
 
     def momentum_source(self, x, t):
-        """[n, 2], m/s2, for D v/Dt = -grad p/rho + nu lap v + source."""
-        v = self.velocity(x, t)
-        source = self.pressure_gradient(x, t) / self.density(x, t)[:, None]
+        """[n, 2], m/s2, for D v/Dt = -grad p/rho + mu/rho lap v + source."""
+        v, rho = self.velocity(x, t), self.density(x, t)
+        source = self.pressure_gradient(x, t) / rho[:, None]
         for axis, terms in enumerate((self.u_terms, self.v_terms)):
             rate = self.speed * self.omega * self._sum(terms, x, t, rate=True)
             slopes = [self.speed * self.k * self._sum(_along(terms, d), x, t) for d in (0, 1)]
-            viscous = self.nu * self.speed * self.k**2 * self._laplacian(terms, x, t)
+            viscous = self.viscosity / rho * self.speed * self.k**2 * self._laplacian(terms, x, t)
             source[:, axis] += rate + v[:, 0] * slopes[0] + v[:, 1] * slopes[1] - viscous
         return source
 
@@ -129,3 +129,14 @@ def reference(quantity, scene, t):
     if quantity in UNITS:
         return 0.0  # norms of errors; judged by absolute metrics
     raise KeyError(quantity)
+
+
+def measure(quantity, run):
+    if quantity not in UNITS:
+        return NotImplemented
+    last = run.snapshot(-1)
+    fluid, t = last["fluid"], last["time"]
+    name, norm = quantity.split("_")
+    norms = {"velocity": velocity_norms, "pressure": pressure_norms, "density": density_norms}[name]
+    field = fluid[{"velocity": "v", "pressure": "p", "density": "rho"}[name]]
+    return float(np.max(norms(run.scene, fluid["x"], field, t)[norm]))
