@@ -27,6 +27,14 @@ template <int d, class T> inline Components<T, d> components(const T& x, const T
         return {x, y};
 }
 
+/// Written out: with {} the compiler clears memory before every cluster.
+template <int d> inline Symmetric<Pack, d> all_zero(const Pack& zero) {
+    if constexpr (d == 3)
+        return {zero, zero, zero, zero, zero, zero};
+    else
+        return {zero, zero, zero};
+}
+
 constexpr std::size_t lookahead = 24; // neighbours whose record is asked for in advance
 static_assert(lookahead <= list_padding);
 
@@ -40,7 +48,7 @@ template <class KernelLaw, int d, class... Terms>
     const Pack scale = broadcast<Pack>(inverse_h);
     const Pack zero = broadcast<Pack>(0.0);
     const auto nothing = components<d>(zero, zero, zero);
-    Sums<d> sums{nothing, zero, nothing, components<d>(nothing, nothing, nothing), nothing, {}, nothing};
+    Sums<d> sums{nothing, zero, nothing, components<d>(nothing, nothing, nothing), nothing, all_zero<d>(zero), nothing};
     const std::span<const std::int32_t> near = clusters.near(cluster);
     const std::int32_t* const list = near.data();
     for (std::size_t e = 0; e < near.size(); ++e) {

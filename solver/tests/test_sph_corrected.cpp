@@ -41,11 +41,11 @@ void set_velocity(SphFluid& f, std::size_t k, const Vec3& v) {
     for (int c = 0; c < f.dimensions; ++c) f.v[static_cast<std::size_t>(c)][k] = v[c];
 }
 
-/// Everything that the corrected operators make of one particle, from the formulas.
+/// Everything that the corrected operators make of one particle, from the formulas; in the plane nothing depends on z.
 struct Slow {
-    Eigen::MatrixXd inverse; // B
-    Eigen::MatrixXd grad_v;  // row: component of v
-    Eigen::VectorXd grad_p, grad_rho, spread;
+    Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero(); // B
+    Eigen::Matrix3d grad_v = Eigen::Matrix3d::Zero();  // row: component of v
+    Vec3 grad_p = Vec3::Zero(), grad_rho = Vec3::Zero(), spread = Vec3::Zero();
 };
 
 double weight(const SphFluid& f, double r) { // F with grad W = F dx
@@ -64,43 +64,42 @@ template <class Body> void for_neighbours(const SphFluid& f, std::size_t a, Body
 }
 
 Slow slow_gradients(const SphFluid& f, std::size_t a) {
-    const int d = f.dimensions;
-    Eigen::MatrixXd moment = Eigen::MatrixXd::Zero(d, d), grad_v = moment;
-    Eigen::VectorXd grad_p = Eigen::VectorXd::Zero(d), grad_rho = grad_p, spread = grad_p;
-    for_neighbours(f, a, [&](std::size_t b, const Vec3& dx, const Vec3& slope, double volume) {
-        const Eigen::VectorXd grad = slope.head(d);
-        moment -= volume * dx.head(d) * grad.transpose();
-        grad_v += volume * (entry(f, f.v, b) - entry(f, f.v, a)).head(d) * grad.transpose();
-        grad_p += volume * (pressure(f, f.rho[b]) - pressure(f, f.rho[a])) * grad;
-        grad_rho += volume * (f.rho[b] - f.rho[a]) * grad;
-        spread -= volume * grad;
+    Slow s;
+    Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
+    if (f.dimensions == 2) moment(2, 2) = 1.0;
+    for_neighbours(f, a, [&](std::size_t b, const Vec3& dx, const Vec3& grad, double volume) {
+        moment -= volume * dx * grad.transpose();
+        s.grad_v += volume * (entry(f, f.v, b) - entry(f, f.v, a)) * grad.transpose();
+        s.grad_p += volume * (pressure(f, f.rho[b]) - pressure(f, f.rho[a])) * grad;
+        s.grad_rho += volume * (f.rho[b] - f.rho[a]) * grad;
+        s.spread -= volume * grad;
     });
-    const Eigen::MatrixXd inverse = moment.inverse();
-    return {inverse, grad_v * inverse.transpose(), inverse * grad_p, inverse * grad_rho, spread};
+    s.inverse = moment.inverse();
+    s.grad_v = Eigen::Matrix3d(s.grad_v * s.inverse.transpose());
+    s.grad_p = Vec3(s.inverse * s.grad_p), s.grad_rho = Vec3(s.inverse * s.grad_rho);
+    return s;
 }
 
 /// All rates of the slot a against those of the formulas, to rounding.
 void expect_slow_rates(const SphFluid& f, const std::vector<Slow>& all, std::size_t a, double delta) {
-    const int d = f.dimensions;
     const Slow& own = all[static_cast<std::size_t>(f.id[a])];
-    Eigen::VectorXd acceleration = f.body_force.head(d) - own.grad_p / f.rho[a];
+    Vec3 acceleration = f.body_force - own.grad_p / f.rho[a];
     double rate = -f.rho[a] * own.grad_v.trace();
     double scale = own.grad_p.norm() / f.rho[a], rate_scale = f.rho[a] * own.grad_v.norm();
     for_neighbours(f, a, [&](std::size_t b, const Vec3& dx, const Vec3& slope, double volume) {
         const Slow& other = all[static_cast<std::size_t>(f.id[b])];
-        const Eigen::VectorXd by =
-            f.viscosity / f.rho[a] * volume * (other.grad_v - own.grad_v) * own.inverse * slope.head(d);
-        const double beyond = f.rho[b] - f.rho[a] + 0.5 * (own.grad_rho + other.grad_rho).dot(dx.head(d));
+        const Vec3 by = f.viscosity / f.rho[a] * volume * (other.grad_v - own.grad_v) * own.inverse * slope;
+        const double beyond = f.rho[b] - f.rho[a] + 0.5 * (own.grad_rho + other.grad_rho).dot(dx);
         const double spread_out = -2.0 * delta * f.h * f.sound_speed * volume * beyond * weight(f, dx.norm());
         acceleration += by, scale += by.norm();
         rate += spread_out, rate_scale += std::abs(spread_out);
     });
-    ASSERT_LT((entry(f, f.a, a).head(d) - acceleration).norm(), 1e-11 * scale) << "slot " << a;
+    ASSERT_LT((entry(f, f.a, a) - acceleration).norm(), 1e-11 * scale) << "slot " << a;
     ASSERT_NEAR(f.drho[a], rate, 1e-11 * rate_scale) << "slot " << a;
     if (!f.extras.shifting) return;
     const double out = own.spread.norm();
-    ASSERT_LT((entry(f, f.spread, a).head(d) - own.spread).norm(), 1e-11 / f.h);
-    ASSERT_LT((entry(f, f.dv_spread, a).head(d) - own.grad_v * own.spread).norm(), 1e-11 * own.grad_v.norm() * out);
+    ASSERT_LT((entry(f, f.spread, a) - own.spread).norm(), 1e-11 / f.h);
+    ASSERT_LT((entry(f, f.dv_spread, a) - own.grad_v * own.spread).norm(), 1e-11 * own.grad_v.norm() * out);
     ASSERT_NEAR(f.drho_spread[a], own.grad_rho.dot(own.spread), 1e-11 * own.grad_rho.norm() * out);
 }
 
