@@ -2,6 +2,7 @@
 
 #include "dem/arrange.hpp"
 #include "run/probes.hpp"
+#include "sph/arrange_fluid.hpp"
 #include "sph/initial_fields.hpp"
 
 #include <fmt/format.h>
@@ -17,6 +18,7 @@ std::vector<LawFamily> law_families() {
                                     {"fluid.viscous_term", law_entries<ViscousTerm>()},
                                     {"fluid.source", law_entries<Source>()},
                                     {"fluid.initial", law_entries<InitialField>()},
+                                    {"fluid.fill", law_entries<Fill>()},
                                     {"grains.diameter", law_entries<DiameterLaw>()},
                                     {"grains.velocity", law_entries<VelocityLaw>()},
                                     {"grains.arrange", law_entries<Arrangement>()},

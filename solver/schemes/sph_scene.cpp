@@ -79,7 +79,11 @@ void read_models(Table& table, SphFluid& f) {
 void read_forces(Table& table, SphFluid& f) {
     const bool full = table.choice("pressure", {"full", "dynamic"}) == "full";
     f.body_force = full ? f.domain.gravity : Vec3::Zero();
+    const Vec3 gravity = f.body_force;
     if (table.has("body_force")) f.body_force += table.components("body_force", f.dimensions);
+    const Vec3 head = gravity * (f.density / (f.mass * f.sound_speed * f.sound_speed));
+    f.extras.stratification = {head[0], head[1], head[2]};
+    f.extras.stratified = gravity.norm() > 0.0;
 }
 
 /// The manufactured flow repeats itself along x and y after the same length.
@@ -110,13 +114,26 @@ void check_spacing(const Table& table, const SphFluid& f) {
     if (count > 2e9) table.fail("spacing", fmt::format("{:.3g} particles; 2e9 are possible", count));
 }
 
-void set_initial_state(Table& table, SphFluid& f) {
+/// The part of the box that is filled: all of it, or what `fill` says; not the walls.
+std::function<bool(const Vec3&)> filled_part(Table& table, const std::vector<FluidWall>& walls) {
+    std::optional<Fill> fill;
+    if (table.has("fill")) fill = make_family<Fill>(table.law("fill"));
+    return [fill, &walls](const Vec3& x) {
+        if (fill && !std::visit([&](const auto& part) { return part(x); }, *fill)) return false;
+        return walls.empty() || !is_solid(walls, x);
+    };
+}
+
+void set_initial_state(Table& table, SphFluid& f, const std::vector<FluidWall>& walls) {
     Table arrange = table.law("arrange");
     const bool jittered = arrange.choice("law", {"lattice", "jittered"}) == "jittered";
     const double jitter = jittered ? arrange.number("jitter", {0.0, 0.5, true, false}) : 0.0;
     const auto seed = static_cast<std::uint64_t>(jittered ? arrange.integer("seed", 0) : 0);
     check_spacing(table, f);
-    fill_box(f, jitter, seed);
+    fill_box(f, jitter, seed, filled_part(table, walls));
+    if (f.slots() == 0) table.fail("arrange", "there is no place for the fluid");
+    line_walls(f, walls);
+    f.walls = walls;
     const auto initial = make_family<InitialField>(table.law("initial"));
     if (std::holds_alternative<ManufacturedField>(initial)) check_manufactured_box(table, "initial", f.domain.size);
     const FluidNumbers numbers = fluid_numbers(f);
@@ -132,7 +149,22 @@ void set_initial_state(Table& table, SphFluid& f) {
 
 } // namespace
 
-SphFluid read_sph_fluid(Table& table, const Domain& domain) {
+std::vector<FluidWall> read_fluid_walls(std::vector<Table>& tables, const Domain& domain) {
+    std::vector<WallBody> bodies = make_walls(tables, domain.dimensions);
+    std::vector<FluidWall> walls;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        FluidWall wall{std::move(bodies[k])};
+        wall.slips = tables[k].choice("slip", {"no_slip", "free_slip"}) == "free_slip";
+        if (std::holds_alternative<TriangleMesh>(wall.body.shape)) {
+            if (domain.dimensions == 2) tables[k].fail("shape", "\"stl\" in a scene of two dimensions");
+            wall.fluid_is_inside = tables[k].choice("fluid_side", {"inside", "outside"}) == "inside";
+        }
+        walls.push_back(std::move(wall));
+    }
+    return walls;
+}
+
+SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<FluidWall>& walls) {
     SphFluid f;
     f.dimensions = domain.dimensions;
     f.domain = domain;
@@ -141,43 +173,34 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain) {
     read_models(table, f);
     read_forces(table, f);
     read_source(table, f);
-    for (int c = 0; c < f.dimensions; ++c)
-        if (!domain.periodic[static_cast<std::size_t>(c)])
-            table.fail("method", "\"sph\" has no walls yet: every side of the box must be periodic");
-    set_initial_state(table, f);
+    f.free_surface = table.has("free_surface") && table.flag("free_surface");
+    if (!walls.empty() && std::holds_alternative<CorrectedOperators>(f.operators))
+        table.fail("operators", "\"corrected\" does not go with walls yet");
+    set_initial_state(table, f, walls);
     return f;
 }
 
 namespace {
 
-/// Integral of -W' r^(power + 1 - d) over the space, per h^(power - d): power d for -W', d - 1 for -W'/r.
-double slope_integral(const SphFluid& f, int power) {
-    const int d = f.dimensions;
-    return std::visit(
-        [d, power](const auto& kernel) {
-            using Law = std::decay_t<decltype(kernel)>;
-            constexpr int n = 2000; // midpoint rule
-            double sum = 0.0;
-            for (int k = 0; k < n; ++k) {
-                const double q = Law::support * (k + 0.5) / n;
-                sum -= Law::f(q) * std::pow(q, power) * Law::support / n;
-            }
-            return Law::sigma(d) * (d == 2 ? 2.0 : 4.0) * std::numbers::pi * sum;
-        },
-        f.kernel);
-}
-
 /// Greatest rate at which the viscous sum damps anything, times h^2/nu: factor * integral of -W'/r, which the shortest
 /// waves feel (for Morris' term and Wendland C2: 7). A gradient taken twice damps no wave faster than the square of the
-/// integral of |dW/dx|. The midpoint rule with a predicted velocity is stable up to a rate of 1/step
-/// (verification/sound_wave).
+/// integral of |dW/dx|. The step is stable up to a rate of 1/((1 + memory) step) (advance_fluid.hpp).
 double viscous_rate(const SphFluid& f) {
     const int d = f.dimensions;
+    const auto integral_of = [&](int power) { // of -W' r^(power - 1)
+        return std::visit(
+            [&](const auto& kernel) {
+                using Law = std::decay_t<decltype(kernel)>;
+                return Law::sigma(d) *
+                       ball_integral<Law>(d, [power](double q) { return -Law::f(q) * (power == 0 ? 1.0 : q); });
+            },
+            f.kernel);
+    };
     if (std::holds_alternative<DoubleGradient>(f.viscous_term)) { // the mean of |cos| is 2/pi, in space 1/2
-        const double gradient = (d == 2 ? 2.0 / std::numbers::pi : 0.5) * slope_integral(f, d);
+        const double gradient = (d == 2 ? 2.0 / std::numbers::pi : 0.5) * integral_of(1);
         return gradient * gradient;
     }
-    const double integral = slope_integral(f, d - 1);
+    const double integral = integral_of(0);
     const double per_viscosity = f.mass * f.mass / f.viscosity;
     const double factor = std::visit(
         [&](const auto& law) {
@@ -199,7 +222,7 @@ std::vector<StepLimit> fluid_limits(const SphFluid& f) {
     const double none = std::numeric_limits<double>::infinity();
     const double nu = f.viscosity / f.density, force = f.body_force.norm();
     return {{"acoustic", acoustic_share * f.h / f.sound_speed, "0.25 h/c"},
-            {"viscous", nu > 0.0 ? viscous_share * f.h * f.h / (nu * viscous_rate(f)) : none,
+            {"viscous", nu > 0.0 ? viscous_share * f.h * f.h / (nu * viscous_rate(f) * (1.0 + f.memory)) : none,
              "0.8 over the greatest rate of the viscous operator"},
             {"force", force > 0.0 ? force_share * std::sqrt(f.h / force) : none, "0.25 sqrt(h/f)"}};
 }

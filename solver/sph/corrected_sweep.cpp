@@ -95,7 +95,10 @@ template <int d> void store_rates(SphFluid& f, std::size_t cluster, double gradi
     Pack divergence = gradients.v.x.x + gradients.v.y.y;
     if constexpr (d == 3) divergence += gradients.v.z.z;
     store(f.drho, cluster, -rho * divergence);
-    if (f.extras.shifting) store(f.drho_spread, cluster, scale * dot(gradients.rho, sums.spread));
+    if (f.extras.shifting) {
+        store(f.drho_spread, cluster, scale * dot(gradients.rho, sums.spread));
+        store(f.completeness, cluster, scale * sums.completeness * broadcast<Pack>(1.0 / d));
+    }
     store_gradients<d>(f, cluster, gradients);
     for_inverse<d>(f, inverse, [&](Field<double>& field, const Pack& value) { store(field, cluster, value); });
 }

@@ -27,6 +27,12 @@ struct Tait {
         const double s = rho / rho_0;
         return c * c * (s * s * s) * (s * s * s);
     }
+    /// Pressure of the fluid at rest where a force has done the work `potential` [m2/s2] since p = 0 (g times depth):
+    /// the enthalpy, integral of dp/rho, inverted.
+    double hydrostatic_pressure(double potential, double rho_0, double c) const {
+        const double enthalpy = 1.0 + (gamma - 1.0) * potential / (c * c);
+        return rho_0 * c * c / gamma * (std::pow(enthalpy, gamma / (gamma - 1.0)) - 1.0);
+    }
 };
 
 /// p = c^2 (rho - rho_0).
@@ -37,6 +43,9 @@ struct LinearState {
     double pressure(double rho, double rho_0, double c) const { return c * c * (rho - rho_0); }
     double density(double p, double rho_0, double c) const { return rho_0 + p / (c * c); }
     double slope(double /*rho*/, double /*rho_0*/, double c) const { return c * c; } // dp/drho [m2/s2]
+    double hydrostatic_pressure(double potential, double rho_0, double c) const {
+        return rho_0 * c * c * std::expm1(potential / (c * c));
+    }
 };
 
 using EquationOfState = std::variant<Tait, LinearState>;

@@ -14,8 +14,7 @@ void add_sources(SphFluid& f, double time) {
     parallel_for(f.slots(), [&](std::size_t k) {
         Vec3 x = Vec3::Zero();
         for (int c = 0; c < f.dimensions; ++c) x[c] = f.x[static_cast<std::size_t>(c)][k];
-        const SourceRates rates =
-            std::visit([&](const auto& law) { return law(x, time, numbers, f.equation_of_state); }, f.source);
+        const SourceRates rates = std::visit([&](const auto& law) { return law(x, time, numbers); }, f.source);
         for (int c = 0; c < f.dimensions; ++c) f.a[static_cast<std::size_t>(c)][k] += rates.acceleration[c];
         f.drho[k] += rates.density_rate;
     });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/vec.hpp"
+#include "sph/equation_of_state.hpp"
 
 namespace plumb {
 
@@ -17,6 +18,8 @@ struct FluidNumbers {
     double density;     // [kg/m3]
     double sound_speed; // [m/s]
     double viscosity;   // dynamic [Pa s]
+    Vec3 gravity;       // that the particles feel [m/s2]
+    EquationOfState equation_of_state;
 };
 
 } // namespace plumb

@@ -96,7 +96,25 @@ struct ManufacturedField {
     }
 };
 
-using InitialField =
-    std::variant<RestField, TaylorGreenField, TaylorGreenCube, ShearWaveField, SoundWaveField, ManufacturedField>;
+/// At rest under gravity below a level surface: p = 0 at the height `surface` and above, and below what the fluid's own
+/// compressibility makes of rho g d.
+struct HydrostaticField {
+    static constexpr std::string_view name = "hydrostatic";
+    static constexpr LawInfo info{"u = 0, integral of dp/rho = g (surface - height)",
+                                  "gravity along one axis, pressure = \"full\"", "Batchelor 1967, sec. 1.4"};
+    double surface; // height against gravity, from the origin [m]
+    explicit HydrostaticField(Table& table) : surface(table.number("surface")) {}
+    FlowState operator()(const Vec3& x, const FluidNumbers& f) const {
+        const double g = f.gravity.norm();
+        const double potential = larger(g * surface + f.gravity.dot(x), 0.0); // g times depth
+        return {
+            Vec3::Zero(),
+            std::visit([&](const auto& law) { return law.hydrostatic_pressure(potential, f.density, f.sound_speed); },
+                       f.equation_of_state)};
+    }
+};
+
+using InitialField = std::variant<RestField, TaylorGreenField, TaylorGreenCube, ShearWaveField, SoundWaveField,
+                                  HydrostaticField, ManufacturedField>;
 
 } // namespace plumb

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "core/laws.hpp"
-#include "sph/equation_of_state.hpp"
 #include "sph/manufactured_flow.hpp"
 
 #include <variant>
@@ -20,10 +19,7 @@ struct SourceRates {
 struct NoSource {
     static constexpr std::string_view name = "none";
     static constexpr LawInfo info{"s_v = 0, s_rho = 0", "any", "definition"};
-    SourceRates operator()(const Vec3& /*x*/, double /*t*/, const FluidNumbers& /*f*/,
-                           const EquationOfState& /*state*/) const {
-        return {};
-    }
+    SourceRates operator()(const Vec3& /*x*/, double /*t*/, const FluidNumbers& /*f*/) const { return {}; }
 };
 
 /// What turns the flow of manufactured_flow.hpp into a solution of
@@ -36,10 +32,12 @@ struct ManufacturedSource {
     ManufacturedFlow flow;
     ManufacturedSource() = default;
     explicit ManufacturedSource(Table& table) : flow(table) {}
-    SourceRates operator()(const Vec3& x, double t, const FluidNumbers& f, const EquationOfState& state) const {
+    SourceRates operator()(const Vec3& x, double t, const FluidNumbers& f) const {
         const ManufacturedFlow::State s = flow.at(x, t, f);
-        const double rho = std::visit([&](const auto& l) { return l.density(s.p, f.density, f.sound_speed); }, state);
-        const double slope = std::visit([&](const auto& l) { return l.slope(rho, f.density, f.sound_speed); }, state);
+        const double rho =
+            std::visit([&](const auto& l) { return l.density(s.p, f.density, f.sound_speed); }, f.equation_of_state);
+        const double slope =
+            std::visit([&](const auto& l) { return l.slope(rho, f.density, f.sound_speed); }, f.equation_of_state);
         return {s.v_rate + s.convection + (s.p_gradient - f.viscosity * s.laplacian) / rho,
                 (s.p_rate + s.v.dot(s.p_gradient)) / slope + rho * s.div_v};
     }

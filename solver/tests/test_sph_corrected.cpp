@@ -246,6 +246,30 @@ TEST(SphCorrected, ParticlesInARowGetThePlainGradient) {
     }
 }
 
+// The price of corrected operators: momentum is conserved to their order only. Gradients err by 5/36 (K h)^2, 0.12 for
+// the pressure's waves here, grad p/rho is up to k U^2/2 = 6.3 m/s2, and errors of 400 jittered particles have a mean
+// of a twentieth: 4 mm/s after 0.1 s, of 2 m/s.
+TEST(SphCorrected, LosesLittleMomentum) {
+    SphFluid f = corrected(box_of_dimensions(2, Vec3(2.0, 2.0, 0.0), everywhere), WendlandC2{}, 1.5, 10.0);
+    put_lattice(f, {20, 20, 1}, 0.1, 8);
+    for (std::size_t p = 0; p < f.slots(); ++p) {
+        const Vec3 x = pi * entry(f, f.x, p);
+        set_velocity(f, p, Vec3(-2.0 * std::cos(x[0]) * std::sin(x[1]), 2.0 * std::sin(x[0]) * std::cos(x[1]), 0.0));
+    }
+    const auto mean_velocity = [&] {
+        Vec3 sum = Vec3::Zero();
+        for (const std::size_t slot : slots_by_id(f)) sum += entry(f, f.v, slot);
+        return Vec3(sum / static_cast<double>(particle_count(f)));
+    };
+    set_extras(f, 0.1, 0.0, true);
+    f.shifting = 4.0 * f.h * 2.0;
+    start(f);
+    const Vec3 before = mean_velocity();
+    for (std::int64_t step = 1; step <= 100; ++step) advance_fluid(f, 1e-3, step);
+    EXPECT_LT((mean_velocity() - before).norm(), 4e-3);
+    EXPECT_GT((mean_velocity() - before).norm(), 1e-9); // or these are not corrected operators
+}
+
 // Gradients read by one thread before another has written them.
 TEST(SphCorrected, SameBitsForAnyNumberOfThreads) {
     for (const int d : {2, 3}) {
