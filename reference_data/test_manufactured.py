@@ -44,7 +44,7 @@ def test_sources_close_the_equations(divergence, t):
     np.testing.assert_allclose(flow.divergence(x, t), div, atol=1e-6)
     np.testing.assert_allclose(carried(flow.density), -rho * div + flow.density_source(x, t), atol=1e-4)
     pressure = np.stack([stencil(flow.pressure, x, t, d, 1) for d in (0, 1)], axis=1) / rho[:, None]
-    viscous = NU * (stencil(flow.velocity, x, t, 0, 2) + stencil(flow.velocity, x, t, 1, 2))
+    viscous = RHO * NU / rho[:, None] * (stencil(flow.velocity, x, t, 0, 2) + stencil(flow.velocity, x, t, 1, 2))
     np.testing.assert_allclose(carried(flow.velocity), -pressure + viscous + flow.momentum_source(x, t), atol=2e-5)
     np.testing.assert_allclose(tait.pressure(rho, RHO, C), flow.pressure(x, t), rtol=1e-10, atol=1e-8)
     if divergence == 0.0:
@@ -97,7 +97,7 @@ def test_sources_against_symbolic_derivation():
                             + sympy.sin(k * speed * t) * sympy.sin(k * x + 2 * k * y) / 2)
     rho = rho_0 * (1 + 7 * p / (rho_0 * c_0**2)) ** sympy.Rational(1, 7)
     carried = lambda f: f.diff(t) + u * f.diff(x) + v * f.diff(y)  # noqa: E731
-    momentum = [carried(f) + p.diff(q) / rho - nu * (f.diff(x, 2) + f.diff(y, 2)) for f, q in ((u, x), (v, y))]
+    momentum = [carried(f) + p.diff(q) / rho - rho_0 * nu / rho * (f.diff(x, 2) + f.diff(y, 2)) for f, q in ((u, x), (v, y))]
     formulas = sympy.lambdify((x, y, t), [carried(rho) + rho * (u.diff(x) + v.diff(y)), *momentum])
     flow, _ = made(0.3)
     for place in ((0.11, 0.52), (0.63, 0.07), (0.4, 0.33)):
@@ -113,3 +113,35 @@ def test_norms_vanish_for_the_exact_fields_and_scale_with_the_flow():
     assert max(reference.velocity_norms(scene, x, flow.velocity(x, 0.1), 0.1)["linf"]) == 0.0
     off = reference.density_norms(scene, x, np.full(30, RHO), 0.1)["linf"]
     assert 0.3 < off[0] < 1.1  # the exact variation is of order one in these units
+
+
+def test_velocity_gradient_and_deformed_lattices():
+    from theory import deformed_lattice
+
+    flow, _ = made(0.3)
+    x = LENGTH * np.random.default_rng(9).random((10, 2))
+    slopes = np.stack([stencil(flow.velocity, x, 0.2, d, 1) for d in (0, 1)], axis=-1)
+    np.testing.assert_allclose(flow.velocity_gradient(x, 0.2), slopes, atol=1e-6)
+    # a deformation is the derivative of the places by the start
+    times, e = np.linspace(0.0, 0.1, 41), 1e-5
+    ends, f = deformed_lattice.carried(flow.velocity, flow.velocity_gradient, x, times)
+    for axis in (0, 1):
+        moved = [deformed_lattice.carried(flow.velocity, flow.velocity_gradient, x + s * e * np.eye(2)[axis], times)[0][-1]
+                 for s in (-1, 1)]
+        np.testing.assert_allclose(f[-1][:, :, axis], (moved[1] - moved[0]) / (2 * e), atol=1e-6)
+    # moments: the unit matrix for many neighbours, turned with the lattice, by a plain double loop
+    turn = np.array([[math.cos(0.3), -math.sin(0.3)], [math.sin(0.3), math.cos(0.3)]])
+    stretch = np.array([[1.5, 0.1], [0.0, 0.7]])
+    many = deformed_lattice.moments("wendland_c2", np.array([stretch / math.sqrt(np.linalg.det(stretch))]), 12.0)[0]
+    np.testing.assert_allclose(many, np.eye(2), atol=1e-5)
+    m, turned = deformed_lattice.moments("wendland_c2", np.array([stretch, turn @ stretch]), 1.5)
+    np.testing.assert_allclose(turned, turn @ m @ turn.T, atol=1e-13)
+    total = np.zeros((2, 2))
+    for a in range(-9, 10):
+        for b in range(-9, 10):
+            r = stretch @ [a, b]
+            q = np.linalg.norm(r) / 1.5
+            if 0 < q < 2:
+                gradient = 7 / (4 * math.pi * 1.5**2) * -5 * q * (1 - q / 2) ** 3 / 1.5 * r / np.linalg.norm(r)
+                total -= np.outer(r, gradient)
+    np.testing.assert_allclose(m, total, atol=1e-13)

@@ -159,6 +159,7 @@ void advance_fluid(SphFluid& f, double dt, std::int64_t step) {
     fill_records(f, 0.5 * dt, dt);
     remember_rates(f);
     evaluate_terms(f);
+    add_sources(f, (static_cast<double>(step) - 0.5) * dt);
     correct(f, dt, step);
     move_boundary(f, 0.5 * dt);
 }
@@ -173,6 +174,7 @@ void start(SphFluid& f) {
     renew_lists(f);
     fill_records(f, 0.0, 0.0);
     evaluate_terms(f);
+    add_sources(f, 0.0);
     if (f.memory == 0.0) return;
     f.a_before = f.a;
     f.drho_before = f.drho;

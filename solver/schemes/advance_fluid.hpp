@@ -9,7 +9,7 @@ namespace plumb {
 
 /// One step of the midpoint rule with a single evaluation:
 ///     x* = x + dt/2 v      v* = v + dt/2 a_before      rho* = rho + dt/2 rho'_before
-///     a, rho' = terms(x*, v*, rho*)
+///     a, rho' = terms(x*, v*, rho*) + sources(x*, t + dt/2)
 ///     v <- v + dt a        rho <- rho + dt rho'        x <- x* + dt/2 v
 /// With a memory b > 0 (integrator "damped_midpoint", b = 1/2) the rates of the predictor are (1 + b) a_before - b
 /// times those of the step before. Second order: the predicted v* and rho* are off by O(dt^2). v and rho then follow

@@ -52,10 +52,14 @@ ViscousTerm read_viscous_term(Table& table, const TermScales& scales) {
 void read_models(Table& table, SphFluid& f) {
     f.kernel = make_family<Kernel>(table.law("kernel"));
     f.equation_of_state = make_family<EquationOfState>(table.law("equation_of_state"));
+    f.operators = make_family<Operators>(table.law("operators"));
     f.viscous_term = read_viscous_term(table, term_scales(f));
     if (std::holds_alternative<Inviscid>(f.viscous_term) != (f.viscosity == 0.0))
         table.fail("viscous_term", fmt::format("\"{}\" does not go with a viscosity of {} Pa s",
                                                law_name(f.viscous_term), f.viscosity));
+    if (std::holds_alternative<DoubleGradient>(f.viscous_term) &&
+        !std::holds_alternative<CorrectedOperators>(f.operators))
+        table.fail("viscous_term", "\"double_gradient\" needs operators = \"corrected\"");
     const double delta = table.number_or("density_diffusion", 0.0, non_negative);
     const double alpha = table.number_or("artificial_viscosity", 0.0, non_negative);
     f.extras.diffusion = 2.0 * delta * f.h * f.sound_speed;
@@ -80,6 +84,21 @@ void read_forces(Table& table, SphFluid& f) {
     const Vec3 head = gravity * (f.density / (f.mass * f.sound_speed * f.sound_speed));
     f.extras.stratification = {head[0], head[1], head[2]};
     f.extras.stratified = gravity.norm() > 0.0;
+}
+
+/// The manufactured flow repeats itself along x and y after the same length.
+void check_manufactured_box(const Table& table, const char* key, const Vec3& size) {
+    if (size[0] != size[1])
+        table.fail(key,
+                   fmt::format("\"manufactured\" needs a square box; this one measures {} m along x and {} m along y",
+                               size[0], size[1]));
+}
+
+/// Sources, if there are any.
+void read_source(Table& table, SphFluid& f) {
+    if (!table.has("source")) return;
+    f.source = make_family<Source>(table.law("source"));
+    if (std::holds_alternative<ManufacturedSource>(f.source)) check_manufactured_box(table, "source", f.domain.size);
 }
 
 /// The box must hold a whole number of spacings along every axis, and no more particles than an id can count.
@@ -116,12 +135,8 @@ void set_initial_state(Table& table, SphFluid& f) {
     line_walls(f);
     fill_buffers(f);
     const auto initial = make_family<InitialField>(table.law("initial"));
-    const FluidNumbers numbers{f.domain.size,
-                               f.density,
-                               f.sound_speed,
-                               f.viscosity,
-                               f.extras.stratified ? f.domain.gravity : Vec3(Vec3::Zero()),
-                               f.equation_of_state};
+    if (std::holds_alternative<ManufacturedField>(initial)) check_manufactured_box(table, "initial", f.domain.size);
+    const FluidNumbers numbers = fluid_numbers(f);
     for (std::size_t k = 0; k < f.slots(); ++k) {
         Vec3 x = Vec3::Zero();
         for (int c = 0; c < f.dimensions; ++c) x[c] = f.x[static_cast<std::size_t>(c)][k];
@@ -189,9 +204,15 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<Fl
     read_numbers(table, f);
     read_models(table, f);
     read_forces(table, f);
+    read_source(table, f);
     f.free_surface = table.has("free_surface") && table.flag("free_surface");
     f.walls = walls;
     f.open_sides = open_sides;
+    if (std::holds_alternative<CorrectedOperators>(f.operators)) {
+        if (f.free_surface) table.fail("operators", "\"corrected\" knows no free surface");
+        if (std::holds_alternative<DoubleGradient>(f.viscous_term) && !(walls.empty() && open_sides.empty()))
+            table.fail("viscous_term", "\"double_gradient\" knows no walls or open sides");
+    }
     set_initial_state(table, f);
     return f;
 }
@@ -199,21 +220,29 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<Fl
 namespace {
 
 /// Greatest rate at which the viscous sum damps anything, times h^2/nu: factor * integral of -W'/r, which the shortest
-/// waves feel (for Morris' term and Wendland C2: 7). The step is stable up to a rate of 1/((1 + memory) step)
-/// (advance_fluid.hpp).
+/// waves feel (for Morris' term and Wendland C2: 7). A gradient taken twice damps no wave faster than the square of the
+/// integral of |dW/dx|. The step is stable up to a rate of 1/((1 + memory) step) (advance_fluid.hpp).
 double viscous_rate(const SphFluid& f) {
     const int d = f.dimensions;
-    const double integral = std::visit(
-        [d](const auto& kernel) {
-            using Law = std::decay_t<decltype(kernel)>;
-            return Law::sigma(d) * ball_integral<Law>(d, [](double q) { return -Law::f(q); });
-        },
-        f.kernel);
+    const auto integral_of = [&](int power) { // of -W' r^(power - 1)
+        return std::visit(
+            [&](const auto& kernel) {
+                using Law = std::decay_t<decltype(kernel)>;
+                return Law::sigma(d) *
+                       ball_integral<Law>(d, [power](double q) { return -Law::f(q) * (power == 0 ? 1.0 : q); });
+            },
+            f.kernel);
+    };
+    if (std::holds_alternative<DoubleGradient>(f.viscous_term)) { // the mean of |cos| is 2/pi, in space 1/2
+        const double gradient = (d == 2 ? 2.0 / std::numbers::pi : 0.5) * integral_of(1);
+        return gradient * gradient;
+    }
+    const double integral = integral_of(0);
     const double per_viscosity = f.mass * f.mass / f.viscosity;
     const double factor = std::visit(
         [&](const auto& law) {
             using Law = std::decay_t<decltype(law)>;
-            if constexpr (std::is_same_v<Law, Inviscid>)
+            if constexpr (std::is_same_v<Law, Inviscid> || std::is_same_v<Law, DoubleGradient>)
                 return 0.0;
             else if constexpr (std::is_same_v<Law, Morris>)
                 return law.coefficient * per_viscosity; // 2

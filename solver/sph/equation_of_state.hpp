@@ -23,6 +23,10 @@ struct Tait {
     double density(double p, double rho_0, double c) const {
         return rho_0 * std::pow(1.0 + gamma * p / (rho_0 * c * c), 1.0 / gamma);
     }
+    double slope(double rho, double rho_0, double c) const { // dp/drho [m2/s2]
+        const double s = rho / rho_0;
+        return c * c * (s * s * s) * (s * s * s);
+    }
     /// Pressure of the fluid at rest where a force has done the work `potential` [m2/s2] since p = 0 (g times depth):
     /// the enthalpy, integral of dp/rho, inverted.
     double hydrostatic_pressure(double potential, double rho_0, double c) const {
@@ -38,6 +42,7 @@ struct LinearState {
                                   "Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214"};
     double pressure(double rho, double rho_0, double c) const { return c * c * (rho - rho_0); }
     double density(double p, double rho_0, double c) const { return rho_0 + p / (c * c); }
+    double slope(double /*rho*/, double /*rho_0*/, double c) const { return c * c; } // dp/drho [m2/s2]
     double hydrostatic_pressure(double potential, double rho_0, double c) const {
         return rho_0 * c * c * std::expm1(potential / (c * c));
     }

@@ -1,9 +1,23 @@
+#include "sph/corrected_sweep.hpp"
 #include "sph/sweep.hpp"
 
 namespace plumb {
 
 void evaluate_terms(SphFluid& f) {
+    if (std::holds_alternative<CorrectedOperators>(f.operators)) return evaluate_corrected(f);
     std::visit([&](const auto& kernel) { evaluate_with<std::decay_t<decltype(kernel)>>(f); }, f.kernel);
+}
+
+void add_sources(SphFluid& f, double time) {
+    if (std::holds_alternative<NoSource>(f.source)) return;
+    const FluidNumbers numbers = fluid_numbers(f);
+    parallel_for(f.slots(), [&](std::size_t k) {
+        Vec3 x = Vec3::Zero();
+        for (int c = 0; c < f.dimensions; ++c) x[c] = f.x[static_cast<std::size_t>(c)][k];
+        const SourceRates rates = std::visit([&](const auto& law) { return law(x, time, numbers); }, f.source);
+        for (int c = 0; c < f.dimensions; ++c) f.a[static_cast<std::size_t>(c)][k] += rates.acceleration[c];
+        f.drho[k] += rates.density_rate;
+    });
 }
 
 } // namespace plumb

@@ -5,10 +5,12 @@
 #include "core/field.hpp"
 #include "sph/boundary.hpp"
 #include "sph/clusters.hpp"
+#include "sph/corrected_operators.hpp"
 #include "sph/equation_of_state.hpp"
 #include "sph/kernels.hpp"
 #include "sph/open_boundaries.hpp"
 #include "sph/pair_terms.hpp"
+#include "sph/sources.hpp"
 
 #include <array>
 #include <cstdint>
@@ -28,9 +30,11 @@ struct SphFluid {
     double sound_speed = 0.0;       // c [m/s]
     double mass = 0.0;              // of a particle: rho_0 dx^d [kg], [kg/m] in the plane
     Kernel kernel;
+    Operators operators;
     EquationOfState equation_of_state;
     ViscousTerm viscous_term;
     Extras extras;
+    Source source;
     double shifting = 0.0;     // diffusivity of positions [m2/s], 0 without
     bool free_surface = false; // particles near one are not shifted
     double memory = 0.0;       // share of the rates before the last ones in the predictor (advance_fluid.hpp)
@@ -49,12 +53,23 @@ struct SphFluid {
     std::int32_t next_id = 0;
     std::size_t particles = 0; // number of them
     FluidClusters clusters;
+    CorrectedFields corrected; // of the last evaluation; empty with plain operators
     std::vector<FluidWall> walls;
     std::vector<OpenSide> open_sides;
     BoundaryParticles boundary; // of walls and open sides
 
     std::size_t slots() const { return id.size(); }
 };
+
+/// Numbers that initial fields and sources may need.
+inline FluidNumbers fluid_numbers(const SphFluid& f) {
+    return {f.domain.size,
+            f.density,
+            f.sound_speed,
+            f.viscosity,
+            f.extras.stratified ? f.domain.gravity : Vec3(Vec3::Zero()),
+            f.equation_of_state};
+}
 
 inline TermScales term_scales(const SphFluid& f) { return {f.mass, f.viscosity, f.h, f.sound_speed, f.dimensions}; }
 
@@ -84,5 +99,8 @@ void restore_lists(SphFluid& fluid);
 
 /// Accelerations and density rates of all particles for the state in the records.
 void evaluate_terms(SphFluid& fluid);
+
+/// Adds the scene's sources at a time [s] to the rates, at the particles' present places.
+void add_sources(SphFluid& fluid, double time);
 
 } // namespace plumb

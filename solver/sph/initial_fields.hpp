@@ -4,30 +4,13 @@
 #pragma once
 
 #include "core/laws.hpp"
-#include "core/vec.hpp"
-#include "sph/equation_of_state.hpp"
+#include "sph/manufactured_flow.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <variant>
 
 namespace plumb {
-
-/// Velocity [m/s] and pressure [Pa] at one place.
-struct FlowState {
-    Vec3 u = Vec3::Zero();
-    double p = 0.0;
-};
-
-/// What an initial field may need to know of the fluid.
-struct FluidNumbers {
-    Vec3 size;          // of the box [m]
-    double density;     // [kg/m3]
-    double sound_speed; // [m/s]
-    double viscosity;   // dynamic [Pa s]
-    Vec3 gravity;       // that the particles feel [m/s2]
-    EquationOfState equation_of_state;
-};
 
 namespace detail {
 inline double wave_number(const Vec3& size, int axis, double waves) {
@@ -136,6 +119,19 @@ struct UniformField {
     FlowState operator()(const Vec3& /*x*/, const FluidNumbers& /*f*/) const { return {velocity, 0.0}; }
 };
 
+/// The flow of the manufactured solution (manufactured_flow.hpp) at t = 0.
+struct ManufacturedField {
+    static constexpr std::string_view name = "manufactured";
+    static constexpr LawInfo info{"u = curl psi + d grad chi, psi, chi and p sums of waves at t = 0",
+                                  "square box in the plane", "verification/mms, eq. 2"};
+    ManufacturedFlow flow;
+    explicit ManufacturedField(Table& table) : flow(table) {}
+    FlowState operator()(const Vec3& x, const FluidNumbers& f) const {
+        const ManufacturedFlow::State s = flow.at(x, 0.0, f);
+        return {s.v, s.p};
+    }
+};
+
 /// At rest under gravity below a level surface: p = 0 at the height `surface` and above, and below what the fluid's own
 /// compressibility makes of rho g d.
 struct HydrostaticField {
@@ -155,6 +151,6 @@ struct HydrostaticField {
 };
 
 using InitialField = std::variant<RestField, UniformPressureField, TaylorGreenField, TaylorGreenCube, ShearWaveField,
-                                  SoundWaveField, HydrostaticField, ChannelField, UniformField>;
+                                  SoundWaveField, HydrostaticField, ChannelField, UniformField, ManufacturedField>;
 
 } // namespace plumb

@@ -43,6 +43,11 @@ template <class T, int d>
         [&](T & s, const T& c) __attribute__((always_inline)) { s -= factor * c; }, sum, a);
 }
 
+/// A symmetric matrix of d x d.
+template <class T, int d> struct Symmetric;
+template <class T> struct Symmetric<T, 2> { T xx, yy, xy; };
+template <class T> struct Symmetric<T, 3> { T xx, yy, xy, zz, xz, yz; };
+
 /// One pair, eight times.
 template <int d> struct PairState {
     Components<Pack, d> dx, dv; // [m], [m/s]
@@ -60,11 +65,14 @@ struct Side {
 template <int d> struct Sums {
     Components<Pack, d> acceleration; // dv/dt
     Pack density_rate;                // d rho/dt
-    // for shifting; without the factor m
+    // for shifting and corrected operators; without the factor m
     Components<Pack, d> spread;                // -grad C, towards where particles are missing
     Components<Components<Pack, d>, d> grad_v; // of each component of the velocity
     Components<Pack, d> grad_rho;
     Pack completeness; // sum V_b (x_b - x_a) . grad W, the divergence of the position
+    // for corrected operators, likewise
+    Symmetric<Pack, d> moment; // sum V (x_b - x_a) (x) grad W
+    Components<Pack, d> grad_p;
 };
 
 /// What the coefficients of the terms are made from.
@@ -153,7 +161,22 @@ struct Cleary : CentralViscosity {
     explicit Cleary(const TermScales& s) : CentralViscosity(s, 2.0 * 4.96333) {}
 };
 
-using ViscousTerm = std::variant<Inviscid, Morris, MonaghanGingold, Cleary>;
+/// dv_a/dt = mu/rho_a sum V_b (grad v_b - grad v_a) . B_a grad W, grad v with the corrected gradient: the divergence of
+/// the velocity's gradient, which needs a second pass over the neighbours (corrected_sweep.hpp) and is no sum over
+/// pairs.
+struct DoubleGradient {
+    static constexpr std::string_view name = "double_gradient";
+    static constexpr LawInfo info{"dv/dt = mu/rho sum V (grad v_b - grad v_a) . B grad W",
+                                  "fluid.operators = \"corrected\"",
+                                  "Negi & Ramachandran 2022, arXiv 2107.11859 (the coupled form)"};
+    double viscosity = 0.0; // dynamic [Pa s]
+    DoubleGradient() = default;
+    explicit DoubleGradient(const TermScales& s) : viscosity(s.viscosity) {}
+};
+
+/// Viscous terms that are sums over pairs.
+using PairViscousTerm = std::variant<Inviscid, Morris, MonaghanGingold, Cleary>;
+using ViscousTerm = std::variant<Inviscid, Morris, MonaghanGingold, Cleary, DoubleGradient>;
 
 /// Terms that few scenes use, in one: each is skipped when its coefficient is zero, at the price of a branch that is
 /// always predicted. A scene without any takes NoExtras.

@@ -4,6 +4,7 @@
 #include "core/parallel.hpp"
 #include "sph/fluid.hpp"
 
+#include <cassert>
 #include <cstring>
 
 namespace plumb {
@@ -26,6 +27,14 @@ template <int d, class T> inline Components<T, d> components(const T& x, const T
         return {x, y};
 }
 
+/// Written out: with {} the compiler clears memory before every cluster.
+template <int d> inline Symmetric<Pack, d> all_zero(const Pack& zero) {
+    if constexpr (d == 3)
+        return {zero, zero, zero, zero, zero, zero};
+    else
+        return {zero, zero, zero};
+}
+
 constexpr std::size_t lookahead = 24; // neighbours whose record is asked for in advance
 static_assert(lookahead <= NeighbourLists::padding);
 
@@ -39,7 +48,8 @@ template <class KernelLaw, int d, class... Terms>
     const Pack scale = broadcast<Pack>(inverse_h);
     const Pack zero = broadcast<Pack>(0.0);
     const auto nothing = components<d>(zero, zero, zero);
-    Sums<d> sums{nothing, zero, nothing, components<d>(nothing, nothing, nothing), nothing, zero};
+    Sums<d> sums{nothing, zero, nothing,           components<d>(nothing, nothing, nothing),
+                 nothing, zero, all_zero<d>(zero), nothing};
     const std::span<const std::int32_t> near = clusters.near(cluster);
     const std::int32_t* const list = near.data();
     for (std::size_t e = 0; e < near.size(); ++e) {
@@ -107,7 +117,9 @@ void evaluate(SphFluid& f, const Viscous& viscous, const Others& others) {
 template <class KernelLaw> void evaluate_with(SphFluid& f) {
     std::visit(
         [&](const auto& viscous) {
-            if (f.extras.idle())
+            if constexpr (std::is_same_v<std::decay_t<decltype(viscous)>, DoubleGradient>)
+                assert(!"double_gradient needs corrected operators; the scene's reader refuses it");
+            else if (f.extras.idle())
                 f.dimensions == 2 ? fluid_sweep::evaluate<KernelLaw, 2>(f, viscous, NoExtras{})
                                   : fluid_sweep::evaluate<KernelLaw, 3>(f, viscous, NoExtras{});
             else

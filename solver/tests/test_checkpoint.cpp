@@ -188,6 +188,7 @@ kernel = "wendland_c2"
 equation_of_state = "tait"
 sound_speed = 10.0
 pressure = "full"
+operators = "plain"
 viscous_term = "morris"
 density_diffusion = 0.1
 artificial_viscosity = 0.02

@@ -30,7 +30,8 @@ std::string scene_text(int dimensions, const Keys& fluid_changes = {}, const Key
                {"smoothing", "1.5"},           {"sound_speed", "20.0"},
                {"kernel", "\"wendland_c2\""},  {"equation_of_state", "\"tait\""},
                {"viscous_term", "\"morris\""}, {"pressure", "\"full\""},
-               {"arrange", "\"lattice\""},     {"initial", "\"rest\""}};
+               {"arrange", "\"lattice\""},     {"initial", "\"rest\""},
+               {"operators", "\"plain\""}};
     for (const auto& [key, value] : domain_changes) domain[key] = value;
     for (const auto& [key, value] : fluid_changes) fluid[key] = value;
     std::string text = "[domain]\n";
@@ -129,7 +130,7 @@ TEST(SphScene, LawsAndExtras) {
         Bench bench(scene_text(2, {{"equation_of_state", '"' + std::string(law.name) + '"'}}));
         EXPECT_EQ(law_name(bench.fluid().equation_of_state), law.name);
     });
-    for_each_law<ViscousTerm>([](auto law) {
+    for_each_law<PairViscousTerm>([](auto law) {
         const Keys keys{{"viscous_term", '"' + std::string(law.name) + '"'},
                         {"viscosity", law.name == "none" ? "0.0" : "0.1"}};
         Bench bench(scene_text(3, keys));
@@ -145,6 +146,29 @@ TEST(SphScene, LawsAndExtras) {
     EXPECT_TRUE(shifted.fluid().extras.shifting);
     EXPECT_NEAR(shifted.fluid().shifting, 4.0 * 0.075 * 0.5, 1e-15); // A h U
     EXPECT_EQ(shifted.fluid().extras.mass, shifted.fluid().mass);
+}
+
+// Operators and sources that a scene names, and the step limit of the gradient taken twice: the integral of -W' over h
+// is 7/3 in the plane (Euler's beta function), times 2/pi for the mean of the cosine, squared.
+TEST(SphScene, CorrectedOperatorsAndSources) {
+    Bench plain(scene_text(2));
+    EXPECT_TRUE(std::holds_alternative<PlainOperators>(plain.fluid().operators));
+    EXPECT_TRUE(std::holds_alternative<NoSource>(plain.fluid().source));
+    const std::string flow = "{law = \"manufactured\", speed = 0.3, divergence = 0.1}";
+    Bench bench(scene_text(2,
+                           {{"operators", "\"corrected\""},
+                            {"viscous_term", "\"double_gradient\""},
+                            {"viscosity", "3.0"},
+                            {"source", flow},
+                            {"initial", flow}},
+                           {{"size", "[1.0, 1.0]"}}));
+    const SphFluid& f = bench.fluid();
+    EXPECT_TRUE(std::holds_alternative<CorrectedOperators>(f.operators));
+    EXPECT_EQ(std::get<DoubleGradient>(f.viscous_term).viscosity, 3.0);
+    EXPECT_EQ(std::get<ManufacturedSource>(f.source).flow.speed, 0.3);
+    EXPECT_EQ(std::get<ManufacturedSource>(f.source).flow.divergence, 0.1);
+    const double rate = std::pow(7.0 / 3.0 * 2.0 / pi, 2), time = 0.075 * 0.075 / 3e-3;
+    EXPECT_NEAR(seconds_of(bench.simulation.timing.limits, "viscous"), 0.8 / rate * time, 1e-5 * time);
 }
 
 // Gravity counted with "dynamic" pressure too, or the body force forgotten.
@@ -249,6 +273,13 @@ TEST(SphScene, BadFluidIsAnInputError) {
     refused({{"initial", "\"storm\""}}, {"fluid.initial", "storm", "shear_wave"});
     refused({{"initial", "{law = \"sound_wave\", speed = 0.1, waves = 1, kind = \"plane\"}"}},
             {"fluid.initial.kind", "plane", "standing"});
+    refused({{"operators", ""}}, {"fluid.operators: missing"});
+    refused({{"operators", "\"exact\""}}, {"fluid.operators", "exact", "plain", "corrected"});
+    refused({{"viscous_term", "\"double_gradient\""}}, {"fluid.viscous_term", "corrected"});
+    refused({{"source", "\"rain\""}}, {"fluid.source", "rain", "manufactured"});
+    refused({{"source", "{law = \"manufactured\", speed = 1.0}"}}, {"fluid.source.divergence: missing"});
+    for (const char* key : {"source", "initial"})
+        refused({{key, "{law = \"manufactured\", speed = 1.0, divergence = 0.0}"}}, {key, "square", "0.8"});
     refused({{"method", "\"grid\""}}, {"fluid.method", "grid", "sph"});
     refused({{"walls", "3"}}, {"fluid.walls", "unknown key"});
 }

@@ -136,7 +136,7 @@ constexpr Strengths all_extras{0.1, 0.2, true};
 TEST(SphSweep, TermsAreThoseOfTheFormulas) {
     for (const int d : {2, 3})
         for_each_law<Kernel>([&](auto kernel) {
-            for_each_law<ViscousTerm>([&](auto law) {
+            for_each_law<PairViscousTerm>([&](auto law) {
                 SCOPED_TRACE(testing::Message() << d << " dimensions, " << kernel.name << ", " << law.name);
                 SphFluid f = stirred(d, kernel, everywhere, cells_for(kernel));
                 f.body_force = d == 2 ? Vec3(0.3, -9.8, 0.0) : Vec3(0.3, 0.7, -9.8);
@@ -177,7 +177,7 @@ TEST(SphSweep, OtherStateAndMixedSides) {
 // A force of a on b without its reaction; copies that count twice.
 TEST(SphSweep, ForcesConserveMomentum) {
     for (const int d : {2, 3})
-        for_each_law<ViscousTerm>([&](auto law) {
+        for_each_law<PairViscousTerm>([&](auto law) {
             SCOPED_TRACE(testing::Message() << d << " dimensions, " << law.name);
             SphFluid f = stirred(d, QuinticSpline{}, everywhere, {10, 9, 11});
             f.body_force = d == 2 ? Vec3(1.0, -2.0, 0.0) : Vec3(1.0, -2.0, 3.0);
@@ -192,7 +192,7 @@ TEST(SphSweep, ForcesConserveMomentum) {
 // A central viscosity that is not central (Morris' is none): an eddy would be braked by nothing.
 TEST(SphSweep, CentralForcesConserveAngularMomentum) {
     for (const int d : {2, 3})
-        for_each_law<ViscousTerm>([&](auto law) {
+        for_each_law<PairViscousTerm>([&](auto law) {
             SphFluid f = stirred(d, WendlandC2{}, nowhere, {8, 8, 8});
             set_viscosity(f, law, law.name == "none" ? 0.0 : 3.0);
             set_extras(f, {0.0, 0.2, false});
@@ -214,7 +214,7 @@ TEST(SphSweep, CentralForcesConserveAngularMomentum) {
 // A term that does not vanish with differences of velocity, density and concentration: noise in a fluid at rest.
 TEST(SphSweep, UniformLatticeInUniformMotionFeelsNothing) {
     for (const int d : {2, 3})
-        for_each_law<ViscousTerm>([&](auto law) {
+        for_each_law<PairViscousTerm>([&](auto law) {
             SCOPED_TRACE(testing::Message() << d << " dimensions, " << law.name);
             SphFluid f = empty_fluid(box_of_dimensions(d, Vec3::Constant(0.8), everywhere), WendlandC2{}, 1.5);
             put_lattice(f, {8, 8, 8}, 0.0, 1);

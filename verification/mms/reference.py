@@ -10,10 +10,11 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
-from theory import tait  # noqa: E402
-from theory.field_errors import component_norms  # noqa: E402
+from theory import deformed_lattice, tait  # noqa: E402
+from theory.field_errors import component_norms, without_mean  # noqa: E402
 
-UNITS = {"velocity_l1": "1", "velocity_l2": "1", "velocity_linf": "1", "pressure_l2": "1", "density_l2": "1"}
+UNITS = {"velocity_l1": "1", "velocity_l2": "1", "velocity_linf": "1", "pressure_l2": "1", "density_l2": "1",
+         "pressure_shape_l2": "1", "mean_pressure": "1"}
 
 
 class Term(NamedTuple):
@@ -50,10 +51,10 @@ class Manufactured:
     def __init__(self, scene):
         fluid, initial = scene["fluid"], scene["fluid"]["initial"]
         self.speed, self.rho, self.c = initial["speed"], fluid["density"], fluid["sound_speed"]
-        self.nu = fluid["viscosity"] / fluid["density"]
+        self.viscosity = fluid["viscosity"]
         self.k = 2.0 * math.pi / scene["domain"]["size"][0]
         self.omega = self.k * self.speed  # one period of the swing takes L/U
-        share = initial.get("divergence", 0.0)
+        share = initial["divergence"]
         self.u_terms = _along(STREAM, 1) + _scaled(_along(POTENTIAL, 0), share)
         self.v_terms = _scaled(_along(STREAM, 0), -1.0) + _scaled(_along(POTENTIAL, 1), share)
 
@@ -70,6 +71,11 @@ class Manufactured:
     def velocity(self, x, t):
         """[n, 2], m/s."""
         return self.speed * np.stack([self._sum(self.u_terms, x, t), self._sum(self.v_terms, x, t)], axis=1)
+
+    def velocity_gradient(self, x, t):
+        """[n, 2, 2], 1/s: d v_i/d x_j."""
+        rows = [[self._sum(_along(terms, axis), x, t) for axis in (0, 1)] for terms in (self.u_terms, self.v_terms)]
+        return self.speed * self.k * np.moveaxis(np.array(rows), -1, 0)
 
     def pressure(self, x, t):
         """[n], Pa."""
@@ -96,13 +102,13 @@ class Manufactured:
         return (rate + carried) / tait.sound_speed(rho, self.rho, self.c) ** 2 + rho * self.divergence(x, t)
 
     def momentum_source(self, x, t):
-        """[n, 2], m/s2, for D v/Dt = -grad p/rho + nu lap v + source."""
-        v = self.velocity(x, t)
-        source = self.pressure_gradient(x, t) / self.density(x, t)[:, None]
+        """[n, 2], m/s2, for D v/Dt = -grad p/rho + mu/rho lap v + source."""
+        v, rho = self.velocity(x, t), self.density(x, t)
+        source = self.pressure_gradient(x, t) / rho[:, None]
         for axis, terms in enumerate((self.u_terms, self.v_terms)):
             rate = self.speed * self.omega * self._sum(terms, x, t, rate=True)
             slopes = [self.speed * self.k * self._sum(_along(terms, d), x, t) for d in (0, 1)]
-            viscous = self.nu * self.speed * self.k**2 * self._laplacian(terms, x, t)
+            viscous = self.viscosity / rho * self.speed * self.k**2 * self._laplacian(terms, x, t)
             source[:, axis] += rate + v[:, 0] * slopes[0] + v[:, 1] * slopes[1] - viscous
         return source
 
@@ -125,7 +131,39 @@ def density_norms(scene, x, rho, t, volume=None):
     return component_norms(rho, made.density(x, t), made.rho * (made.speed / made.c) ** 2, volume)
 
 
+def plain_drift(scene, t, side=24, steps=20):
+    """Mean pressure of the plain operators at t over rho_0 U^2: c^2 times the time integral of the mean of -D over particles
+    (README, eq. 8)."""
+    made, fluid = Manufactured(scene), scene["fluid"]
+    length = 2.0 * math.pi / made.k
+    middles = (np.arange(side) + 0.5) * length / side
+    x = np.stack(np.meshgrid(middles, middles), axis=-1).reshape(-1, 2)
+    times = np.linspace(0.0, t, steps + 1)
+    means = deformed_lattice.divergence_errors(fluid["kernel"], fluid["smoothing"], made.velocity, made.velocity_gradient, x,
+                                               times).mean(axis=1)
+    return -((made.c / made.speed) ** 2) * np.mean(0.5 * (means[1:] + means[:-1])) * t
+
+
 def reference(quantity, scene, t):
+    if quantity == "mean_pressure":
+        return plain_drift(scene, float(np.max(t)))
     if quantity in UNITS:
         return 0.0  # norms of errors; judged by absolute metrics
     raise KeyError(quantity)
+
+
+def measure(quantity, run):
+    if quantity not in UNITS:
+        return NotImplemented
+    last = run.snapshot(-1)
+    fluid, t = last["fluid"], last["time"]
+    made, x, p = Manufactured(run.scene), fluid["x"], fluid["p"]
+    scale = made.rho * made.speed**2
+    if quantity == "mean_pressure":
+        return float(np.mean(p - made.pressure(x, t))) / scale
+    if quantity == "pressure_shape_l2":
+        return float(component_norms(without_mean(p), without_mean(made.pressure(x, t)), scale)["l2"][0])
+    name, norm = quantity.split("_")
+    norms = {"velocity": velocity_norms, "pressure": pressure_norms, "density": density_norms}[name]
+    field = {"velocity": fluid["v"], "pressure": p, "density": fluid["rho"]}[name]
+    return float(np.max(norms(run.scene, x, field, t)[norm]))

@@ -1,0 +1,39 @@
+// Which gradients the equations of motion are made of.
+#pragma once
+
+#include "core/field.hpp"
+#include "core/laws.hpp"
+
+#include <array>
+#include <variant>
+
+namespace plumb {
+
+/// Sums with the gradient of the kernel as it is, pressure in the form that conserves momentum (pair_terms.hpp). A
+/// linear field has the right gradient only as far as the neighbours are those of an integral.
+struct PlainOperators {
+    static constexpr std::string_view name = "plain";
+    static constexpr LawInfo info{"-sum m (p_a/rho_a^2 + p_b/rho_b^2) grad W, sum m v_ab . grad W",
+                                  "any; conserves momentum; errors of fixed h/spacing do not vanish",
+                                  "Monaghan 2005, Rep. Prog. Phys. 68, 1703"};
+};
+
+/// Sums of differences with B_a grad W, B_a^-1 = sum V_b (x_b - x_a) (x) grad_a W: exact for linear fields whatever the
+/// neighbours, at the price of momentum, which is conserved to the order of the scheme only.
+struct CorrectedOperators {
+    static constexpr std::string_view name = "corrected";
+    static constexpr LawInfo info{"-1/rho_a sum V (p_b - p_a) B_a grad W, -rho_a sum V (v_b - v_a) . B_a grad W",
+                                  "any; second order where particles are evenly spread over h; loses momentum",
+                                  "Bonet & Lok 1999, Comput. Methods Appl. Mech. Eng. 180, 97; Negi & Ramachandran "
+                                  "2022, arXiv 2107.11859"};
+};
+
+using Operators = std::variant<PlainOperators, CorrectedOperators>;
+
+/// What the first pass of the corrected operators leaves for the second.
+struct CorrectedFields {
+    Field<double> gradients;               // [records][corrected_stride] rows of grad v [1/s], then grad rho [kg/m4]
+    std::array<Field<double>, 6> inverses; // [slots] of the sums that make linear fields exact: xx yy xy (zz xz yz)
+};
+
+} // namespace plumb
