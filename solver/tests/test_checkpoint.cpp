@@ -131,6 +131,7 @@ equation_of_state = "linear"
 sound_speed = 20.0
 pressure = "full"
 viscous_term = "morris"
+operators = "plain"
 density_diffusion = 0.1
 shifting = 1.0
 reference_velocity = 1.0

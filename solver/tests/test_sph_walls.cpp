@@ -23,7 +23,7 @@ std::string scene_text(const std::string& more, const std::string& fluid = "",
         "[domain]\nsize = [1.0, 0.8]\nperiodic = {}\ngravity = {}\n"
         "[fluid]\nmethod = \"sph\"\ndensity = 1000.0\nviscosity = 10.0\nspacing = 0.05\nsmoothing = 1.5\n"
         "kernel = \"wendland_c2\"\nequation_of_state = \"linear\"\nsound_speed = 20.0\npressure = \"full\"\n"
-        "viscous_term = \"morris\"\narrange = \"lattice\"\ninitial = {}\n{}\n"
+        "viscous_term = \"morris\"\noperators = \"plain\"\narrange = \"lattice\"\ninitial = {}\n{}\n"
         "[time]\nend = 1e-2\noutput_interval = 1e-3\nintegrator = \"damped_midpoint\"\nstep = 1e-4\n{}",
         periodic, gravity, initial, fluid, more);
 }
