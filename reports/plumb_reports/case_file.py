@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from .bisection_file import WorkPrecision, read_bisections, read_work_precision
 from .metrics import METRICS
 from .strict import CaseError, is_number, toml_table
 
@@ -100,6 +101,8 @@ class Case:
     checks: tuple
     must_fail: tuple
     figures: tuple
+    bisections: tuple = ()
+    work_precision: WorkPrecision = None
 
     def variant(self, name):
         """The variant called `name`."""
@@ -108,6 +111,10 @@ class Case:
     def check(self, name):
         """The check with this id."""
         return next(c for c in self.checks if c.id == name)
+
+    def bisection_of(self, variant):
+        """The bisection that varies `variant`, or None."""
+        return next((b for b in self.bisections if variant.name in b.variants), None)
 
     def runs_in(self, variant, tier):
         """Whether `tier` judges `variant`; one that no check names is only shown, in every tier."""
@@ -131,8 +138,10 @@ def read_case(folder):
     sweep = read_sweep(table.table("sweep", "[sweep]"))
     variants = read_variants(table, sweep)
     checks = read_checks(table, reference, variants, sweep)
+    bisections = read_bisections(table, variants, sweep)
     case = Case(folder.name, folder, summary, source, reference, area, variants, sweep, checks,
-                read_must_fail(table, checks, variants, sweep), read_figures(table))
+                read_must_fail(table, checks, variants, sweep), read_figures(table), bisections,
+                read_work_precision(table, checks, variants, bisections))
     table.finish()
     return case
 
