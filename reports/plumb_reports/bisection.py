@@ -60,17 +60,17 @@ def used_value(bisection, trial):
     return trial.value * trial.info["step"] / trial.info["limits"][bisection.rules]
 
 
-def bisected_variants(case, tier, folder, plumb, jobs):
+def bisected_variants(case, tier, folder, plumb, jobs, reference):
     """The Bisected of every bisected variant that `tier` runs, at most `jobs` at a time."""
     chosen = [(bisection, case.variant(name)) for bisection in case.bisections for name in bisection.variants
               if case.runs_in(case.variant(name), tier)]
     with ThreadPoolExecutor(max_workers=jobs) as pool:
-        return list(pool.map(lambda pair: bisected(case, *pair, tier, folder / pair[1].name, plumb), chosen))
+        return list(pool.map(lambda pair: bisected(case, *pair, tier, folder / pair[1].name, plumb, reference), chosen))
 
 
-def bisected(case, bisection, variant, tier, folder, plumb, broken=None):
+def bisected(case, bisection, variant, tier, folder, plumb, reference, broken=None):
     """The Bisected of one variant; `broken` overrides win over the variant's."""
-    search = Search(case, bisection, variant, folder, plumb, broken or {})
+    search = Search(case, bisection, variant, folder, plumb, reference, broken or {})
     failure = None
     try:
         search.narrow(bisection.resolution_of(tier))
@@ -82,9 +82,9 @@ def bisected(case, bisection, variant, tier, folder, plumb, broken=None):
 class Search:
     """One bisection under way."""
 
-    def __init__(self, case, bisection, variant, folder, plumb, broken):
+    def __init__(self, case, bisection, variant, folder, plumb, reference, broken):
         self.case, self.bisection, self.variant = case, bisection, variant
-        self.folder, self.plumb, self.broken = folder, plumb, broken
+        self.folder, self.plumb, self.reference, self.broken = folder, plumb, reference, broken
         self.trials = []
 
     def narrow(self, resolution):
@@ -115,13 +115,13 @@ class Search:
         run.parameter = bisection.parameter
         self.trials.append(run)
         try:
-            run.outcome = outcome(bisection, run)
+            run.outcome = outcome(bisection, run, self.reference)
         except NotComparable as error:
             raise NotComparable(f"{bisection.parameter} = {value:.4g}: {error}") from error
         return run.outcome == STABLE
 
 
-def outcome(bisection, run):
+def outcome(bisection, run, reference):
     """"stable", or why the run was not; raises NotComparable for a failure that is no instability."""
     diverged = run.exit == DIVERGED
     if run.failure and not diverged:
@@ -129,12 +129,12 @@ def outcome(bisection, run):
     demand_ruling_limit(bisection, run)
     if diverged:
         return f"unstable: {run.failure}"
-    _, values = run.series(bisection.probe)
+    _, values, _ = reference.measured(bisection.quantity, run)
     bound = bisection.above if bisection.above is not None else bisection.times_start * np.abs(values[0]).max()
     largest = np.abs(values).max()
     if largest <= bound:  # written so that NaN is not stable
         return STABLE
-    return f"unstable: {bisection.probe} reached {largest:.4g}, more than {bound:.4g}"
+    return f"unstable: {bisection.quantity} reached {largest:.4g}, more than {bound:.4g}"
 
 
 def demand_ruling_limit(bisection, run):

@@ -20,7 +20,7 @@ class Bisection:
     default: float
     high: float
     resolution: dict  # by tier, as Check.finest
-    probe: str
+    quantity: str
     times_start: float = None
     above: float = None
     rules: str = None  # step limit that has to rule in every run
@@ -70,10 +70,10 @@ def read_bisection(entry, variants):
     resolution["quick"] = entry.number("quick_resolution", resolution["full"])
     unstable = entry.table("unstable", f"{entry.where} unstable")
     if unstable is None:
-        raise entry.error("unstable", "is missing; it says which probe tells that a run is unstable")
+        raise entry.error("unstable", "is missing; it says which quantity tells that a run is unstable")
     bisection = Bisection(
         identity, entry.text("parameter"), entry.texts("variants", tuple(names), choices=names), entry.number("low"),
-        entry.number("default"), entry.number("high"), resolution, unstable.text("probe"),
+        entry.number("default"), entry.number("high"), resolution, unstable.text("quantity"),
         unstable.number("times_start", None), unstable.number("above", None), entry.text("rules", None))
     unstable.finish()
     entry.finish()
@@ -82,7 +82,7 @@ def read_bisection(entry, variants):
 
 
 def refuse_impossible_bracket(entry, unstable, bisection):
-    """Raises CaseError for numbers between which nothing can be sought, or a probe without one clear bound."""
+    """Raises CaseError for numbers between which nothing can be sought, or a quantity without one clear bound."""
     if not 0.0 < bisection.low < bisection.default < bisection.high:
         raise entry.error("default", f"must lie between low and high, all positive, but is {bisection.default!r}")
     widest = math.log(bisection.high / bisection.low)

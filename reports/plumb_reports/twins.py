@@ -55,7 +55,7 @@ def twin_judgement(case, twin, overrides, plumb, jobs, folder, reference):
     check, variant = case.check(twin.breaks), case.variant(twin.variant)
     bisection = case.bisection_of(variant)
     if bisection:
-        boundary = bisected(case, bisection, variant, check.twin_tier, folder, plumb, overrides)
+        boundary = bisected(case, bisection, variant, check.twin_tier, folder, plumb, reference, overrides)
         return judgement(check, twin.variant, check.twin_tier, [boundary], reference)
     plans = [plan(case, variant, value, folder / f"{k:02d}", overrides)
              for k, value in enumerate(twin_values(case, twin))]

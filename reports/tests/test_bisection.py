@@ -26,7 +26,7 @@ default = 0.1
 high = 1.0
 resolution = 0.02
 quick_resolution = 0.2
-unstable = {probe = "v", above = 4.5}
+unstable = {quantity = "v", above = 4.5}
 
 [[check]]
 id = "boundary"

@@ -12,7 +12,8 @@ namespace plumb {
 /// Reads the [fluid] table and puts the particles in place. InputError for whatever cannot be meant.
 SphFluid read_sph_fluid(Table& table, const Domain& domain);
 
-/// Bounds of the step: a sound wave, diffusion of momentum, and the body force may each move by a share of h.
+/// Bounds of the step: a sound wave and the body force may each move by a share of h, diffusion of momentum and
+/// shifting undo a share of what they find.
 std::vector<StepLimit> fluid_limits(const SphFluid& fluid);
 
 } // namespace plumb
