@@ -17,10 +17,12 @@ FEWEST_FOR_ORDER = 3  # two points fit every slope and leave no residual
 
 @dataclass(frozen=True)
 class Variant:
-    """A named set of scene overrides; `swept` is False for a variant that runs once, without the sweep."""
+    """A named set of scene overrides; `swept` is False for a variant that runs once, without the sweep, and `values` says how many
+    of the sweep's values it runs at most (None: all)."""
     name: str
     overrides: dict = field(default_factory=dict)
     swept: bool = True
+    values: int = None
 
 
 @dataclass(frozen=True)
@@ -123,7 +125,7 @@ class Case:
 
     def values_of(self, variant, tier):
         """Sweep values that `variant` runs in `tier`; (None,) without a sweep."""
-        return self.sweep.values_of(tier) if self.sweep and variant.swept else (None,)
+        return self.sweep.values_of(tier)[:variant.values] if self.sweep and variant.swept else (None,)
 
 
 def read_case(folder):
@@ -166,8 +168,12 @@ def read_variants(table, sweep):
     for entry in table.tables("variant"):
         name = entry.name("name")
         entry.where = f"[[variant]] '{name}'"
-        variant = Variant(name, entry.dictionary("set", {}), entry.flag("sweep", True))
+        most = len(sweep.values) if sweep else 0
+        variant = Variant(name, entry.dictionary("set", {}), entry.flag("sweep", True),
+                          entry.integer("values", None, lowest=1, highest=most))
         entry.finish()
+        if variant.values and not variant.swept:
+            raise entry.error("values", "is given, but the variant is not swept")
         if any(v.name == name for v in variants):
             raise entry.error("name", "is used twice")
         if sweep and variant.swept and sweep.parameter in variant.overrides:
@@ -248,6 +254,8 @@ def refuse_impossible_order(entry, check, variants, sweep):
     for variant in variants:
         if variant.name in check.variants and not variant.swept:
             raise entry.error("order", f"is asked of variant '{variant.name}', which has sweep = false")
+        if variant.name in check.variants and variant.values and variant.values < FEWEST_FOR_ORDER:
+            raise entry.error("order", f"is asked of variant '{variant.name}', which has values = {variant.values}")
     for tier in check.tiers:
         count = len(sweep.values_of(tier))
         if count < FEWEST_FOR_ORDER:

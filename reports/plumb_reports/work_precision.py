@@ -8,7 +8,7 @@ from .judge import measured
 from .metrics import NotComparable
 from .verdicts import number
 
-SMALLEST, LARGEST = 4.0, 9.0  # marks, from the coarsest to the finest resolution
+SMALLEST, LARGEST = 4.5, 10.0  # marks, from the coarsest to the finest resolution
 
 
 def work_precision(case, runs, reference):
@@ -64,7 +64,7 @@ def chart(case, content, points):
         own = [point for point in points if point["variant"] == variant]
         draw_variant(axes, case, own, COLOURS[k % len(COLOURS)], MARKERS[(k + k // len(COLOURS)) % len(MARKERS)])
     draw_front(axes, sorted((point for point in points if point["front"]), key=lambda point: point["cpu_s"]))
-    axes.margins(0.1)
+    axes.margins(x=0.16, y=0.1)
     make_logarithmic(axes)
     axes.set_xlabel("CPU time of the run (s)")
     axes.set_ylabel(with_units(f"{content['metric']} of {content['quantity']}", content["units"]))
@@ -77,20 +77,21 @@ def draw_variant(axes, case, points, colour, marker):
     """The runs of one variant, joined from coarse to fine."""
     cost, error = ([point[key] for point in points] for key in ("cpu_s", "error"))
     axes.plot(cost, error, color=colour, linewidth=0.9, alpha=0.6)
-    for k, point in enumerate(points):
+    axes.plot([], [], color=colour, marker=marker, markersize=6, linewidth=0.9, label=points[0]["variant"])
+    for point in points:
         axes.plot(point["cpu_s"], point["error"], marker=marker, markersize=mark_size(case, point["value"]), color=colour,
-                  linestyle="none", markeredgecolor="white", markeredgewidth=0.5,
-                  label=point["variant"] if k == 0 else None)
+                  linestyle="none", markeredgecolor="white", markeredgewidth=0.5)
 
 
 def draw_front(axes, front):
     """The front as a broad line behind the marks, each of its points with its name."""
     axes.plot([p["cpu_s"] for p in front], [p["error"] for p in front], color="#A8B0B8", linewidth=5, alpha=0.5, zorder=0,
               label="front")
-    for point in front:
+    for k, point in enumerate(front):
+        side = {"xytext": (7, 5), "ha": "left"} if k % 2 else {"xytext": (-5, -12), "ha": "right"}  # neighbours kept apart
         text = point["variant"] if point["value"] is None else f"{point['variant']}; {number(point['value'])}"
-        axes.annotate(text, (point["cpu_s"], point["error"]), xytext=(-6, -7), textcoords="offset points", fontsize=7,
-                      color="#3A424A", ha="right", va="top")
+        axes.annotate(text, (point["cpu_s"], point["error"]), textcoords="offset points", fontsize=7, color="#3A424A",
+                      **side)
 
 
 def mark_size(case, value):

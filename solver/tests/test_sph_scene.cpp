@@ -191,8 +191,8 @@ TEST(SphScene, AutomaticSoundSpeed) {
 }
 
 // Step limits off by a factor: 0.25 h/c, 0.8 over the greatest viscous rate and 0.25 sqrt(h/f), infinite without
-// viscosity and force. The integral of -W'/r is 7/2 over h^2 for this kernel (by Euler's beta function, in the plane and in
-// space), and Morris' rate is twice that.
+// viscosity and force. The integral of -W'/r is 7/2 over h^2 for this kernel (by Euler's beta function, in the plane
+// and in space), and Morris' rate is twice that.
 TEST(SphScene, StepLimits) {
     const double time = 0.075 * 0.075 / 3e-3; // h^2/nu
     for (const int d : {2, 3}) {
