@@ -91,8 +91,9 @@ struct WallBody {
     }
 };
 
-/// The walls of all [[wall]] tables: `name`, `shape` with its keys, and `velocity` (at rest when absent). `contact` is
-/// left to the reader of contacts. InputError for a name used twice and as the shapes say.
-std::vector<WallBody> make_walls(std::vector<Table>& tables);
+/// The walls of all [[wall]] tables: `name`, `shape` with its keys, and `velocity` (at rest when absent). In two
+/// dimensions places have two numbers and a cylinder stands across the plane. `contact` and `slip` are left to their
+/// readers. InputError for a name used twice and as the shapes say.
+std::vector<WallBody> make_walls(std::vector<Table>& tables, int dimensions = 3);
 
 } // namespace plumb

@@ -2,6 +2,7 @@
 
 #include "dem/arrange.hpp"
 #include "run/probes.hpp"
+#include "sph/arrange_fluid.hpp"
 #include "sph/initial_fields.hpp"
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@ std::vector<LawFamily> law_families() {
                                     {"fluid.equation_of_state", law_entries<EquationOfState>()},
                                     {"fluid.viscous_term", law_entries<ViscousTerm>()},
                                     {"fluid.initial", law_entries<InitialField>()},
+                                    {"fluid.fill", law_entries<Fill>()},
                                     {"grains.diameter", law_entries<DiameterLaw>()},
                                     {"grains.velocity", law_entries<VelocityLaw>()},
                                     {"grains.arrange", law_entries<Arrangement>()},

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "sph/wall_particles.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,19 +35,28 @@ bool drift(SphFluid& f, double half) {
     return std::any_of(left.begin(), left.end(), [](std::uint8_t l) { return l != 0; });
 }
 
+/// Rates with which v and rho are predicted half a step ahead: the last ones, or a blend with those before.
+struct Prediction {
+    double last, before;
+};
+
 /// Records of the state half a step ahead of v and rho; x is there already.
 void fill_records(SphFluid& f, double half) {
+    const Prediction rate{half * (1.0 + f.memory), -half * f.memory};
+    const bool remembers = f.memory > 0.0;
     std::visit(
         [&](const auto& law) {
             parallel_for(f.slots(), [&](std::size_t k) {
                 if (f.id[k] < 0) return; // a copy
-                const double rho = f.rho[k] + half * f.drho[k];
+                const double rho =
+                    f.rho[k] + rate.last * f.drho[k] + (remembers ? rate.before * f.drho_before[k] : 0.0);
                 FluidRecord record{};
                 double* const position = &record.x;
                 double* const velocity = &record.u;
                 for_each_axis(f, [&](std::size_t c) {
                     position[c] = f.x[c][k];
-                    velocity[c] = f.v[c][k] + half * f.a[c][k];
+                    velocity[c] =
+                        f.v[c][k] + rate.last * f.a[c][k] + (remembers ? rate.before * f.a_before[c][k] : 0.0);
                 });
                 record.p_over_rho_sq = law.pressure(rho, f.density, f.sound_speed) / (rho * rho);
                 record.volume = f.mass / rho;
@@ -55,6 +65,16 @@ void fill_records(SphFluid& f, double half) {
         },
         f.equation_of_state);
     update_images(f.clusters, f.domain);
+    if (f.boundary.size() == 0) return;
+    continue_state(f);
+    update_images(f.clusters, f.domain);
+}
+
+/// Keeps the rates of the last evaluation, if the predictor wants them, while new ones are made.
+void remember_rates(SphFluid& f) {
+    if (f.memory == 0.0) return;
+    for_each_axis(f, [&](std::size_t c) { std::swap(f.a[c], f.a_before[c]); });
+    std::swap(f.drho, f.drho_before);
 }
 
 [[noreturn]] void report_divergence(const SphFluid& f, std::size_t k, std::int64_t step, double dt, double speed) {
@@ -71,7 +91,10 @@ void shift_particle(SphFluid& f, std::size_t k, double shift) {
     double length_sq = 0.0;
     for_each_axis(f, [&](std::size_t c) { length_sq += f.spread[c][k] * f.spread[c][k]; });
     const double length = shift * std::sqrt(length_sq), most = 0.1 * f.spacing;
-    const double factor = length > most ? shift * most / length : shift;
+    double factor = length > most ? shift * most / length : shift;
+    // The gradient of the concentration points out of a free surface: fading from whole to a fifth of the neighbours
+    // gone.
+    if (f.free_surface) factor *= std::clamp((f.completeness[k] - 0.8) / 0.15, 0.0, 1.0);
     for_each_axis(f, [&](std::size_t c) {
         f.x[c][k] += factor * f.spread[c][k];
         f.v[c][k] += factor * f.dv_spread[c][k];
@@ -97,21 +120,61 @@ void correct(SphFluid& f, double dt, std::int64_t step) {
     });
 }
 
+/// Particles behind a wall. Lone ones, at a free surface, meet no pressure that could stop them: they are put back to
+/// the surface and lose the velocity into the wall. In the bulk, one that is a spacing deep has diverged.
+void stop_at_walls(SphFluid& f, double dt, std::int64_t step) {
+    if (f.walls.empty()) return;
+    const double time = dt * (static_cast<double>(step) - 0.5);
+    parallel_for(f.slots(), [&](std::size_t k) {
+        Vec3 x = Vec3::Zero(), v = Vec3::Zero();
+        for_each_axis(f, [&](std::size_t c) {
+            x[static_cast<Eigen::Index>(c)] = f.x[c][k];
+            v[static_cast<Eigen::Index>(c)] = f.v[c][k];
+        });
+        const Penetration p = penetration(f.walls, x, time, 2.0 * f.spacing);
+        if (p.depth == 0.0) return;
+        if (!f.free_surface) {
+            if (p.depth < f.spacing) return;
+            throw Diverged(step, dt * static_cast<double>(step), "fluid position", f.id[k], p.depth,
+                           "behind a wall by more than a spacing");
+        }
+        const double into = std::min((v - p.wall_velocity).dot(p.normal), 0.0);
+        for_each_axis(f, [&](std::size_t c) {
+            const double n = p.normal[static_cast<Eigen::Index>(c)];
+            f.x[c][k] += p.depth * n;
+            f.v[c][k] -= into * n;
+        });
+    });
+}
+
 } // namespace
 
 void advance_fluid(SphFluid& f, double dt, std::int64_t step) {
-    if (drift(f, 0.5 * dt)) renew_lists(f);
+    move_boundary(f, 0.5 * dt);
+    if (drift(f, 0.5 * dt) || f.boundary.travelled > 0.5 * f.clusters.skin) {
+        stop_at_walls(f, dt, step);
+        renew_lists(f);
+    }
     fill_records(f, 0.5 * dt);
+    remember_rates(f);
     evaluate_terms(f);
     correct(f, dt, step);
+    move_boundary(f, 0.5 * dt);
 }
 
 void start(SphFluid& f) {
     for_each_axis(f, [&](std::size_t c) { f.a[c].assign(f.slots(), 0.0); });
     f.drho.assign(f.slots(), 0.0);
+    if (f.memory > 0.0) {
+        f.a_before = f.a;
+        f.drho_before = f.drho;
+    }
     renew_lists(f);
     fill_records(f, 0.0);
     evaluate_terms(f);
+    if (f.memory == 0.0) return;
+    f.a_before = f.a;
+    f.drho_before = f.drho;
 }
 
 } // namespace plumb

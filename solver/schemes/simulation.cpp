@@ -148,19 +148,14 @@ bool is_sph(Table& root) {
 
 /// A scene of smoothed particles alone.
 void make_sph(Table& root, Simulation& s) {
-    for (const char* key : {"grains", "wall", "injector", "contact", "coupling"})
+    for (const char* key : {"grains", "injector", "contact", "coupling"})
         if (root.has(key)) root.fail(key, "does not go with fluid.method = \"sph\" yet");
     Table fluid = root.table("fluid");
-    s.sph = read_sph_fluid(fluid, s.grains.domain);
-    const double least = 2.0 * (s.sph->clusters.reach + s.sph->clusters.skin);
-    for (int c = 0; c < s.sph->dimensions; ++c)
-        if (s.grains.domain.size[c] < least)
-            root.fail("domain.size",
-                      fmt::format("{} m along periodic {} is shorter than twice the reach of the kernel with its "
-                                  "skin, {:.6g} m: particles would meet two images of each other",
-                                  s.grains.domain.size[c], axis_names[static_cast<std::size_t>(c)], least));
+    std::vector<Table> wall_tables = root.tables("wall");
+    s.sph = read_sph_fluid(fluid, s.grains.domain, read_fluid_walls(wall_tables, s.grains.domain));
+    check_periodic_sides(s.grains.domain, s.sph->clusters.reach + s.sph->clusters.skin, root.file());
     Table time = root.table("time");
-    time.choice("integrator", {"midpoint"});
+    s.sph->memory = time.choice("integrator", {"midpoint", "damped_midpoint"}) == "midpoint" ? 0.0 : 0.5;
     s.timing = timing(time, fluid_limits(*s.sph), probe_intervals(root));
     start(*s.sph);
 }

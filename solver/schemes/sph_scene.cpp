@@ -76,7 +76,11 @@ void read_models(Table& table, SphFluid& f) {
 void read_forces(Table& table, SphFluid& f) {
     const bool full = table.choice("pressure", {"full", "dynamic"}) == "full";
     f.body_force = full ? f.domain.gravity : Vec3::Zero();
+    const Vec3 gravity = f.body_force;
     if (table.has("body_force")) f.body_force += table.components("body_force", f.dimensions);
+    const Vec3 head = gravity * (f.density / (f.mass * f.sound_speed * f.sound_speed));
+    f.extras.stratification = {head[0], head[1], head[2]};
+    f.extras.stratified = gravity.norm() > 0.0;
 }
 
 /// The box must hold a whole number of spacings along every axis, and no more particles than an id can count.
@@ -92,15 +96,33 @@ void check_spacing(const Table& table, const SphFluid& f) {
     if (count > 2e9) table.fail("spacing", fmt::format("{:.3g} particles; 2e9 are possible", count));
 }
 
-void set_initial_state(Table& table, SphFluid& f) {
+/// The part of the box that is filled: all of it, or what `fill` says; not the walls.
+std::function<bool(const Vec3&)> filled_part(Table& table, const std::vector<FluidWall>& walls) {
+    std::optional<Fill> fill;
+    if (table.has("fill")) fill = make_family<Fill>(table.law("fill"));
+    return [fill, &walls](const Vec3& x) {
+        if (fill && !std::visit([&](const auto& part) { return part(x); }, *fill)) return false;
+        return walls.empty() || !is_solid(walls, x);
+    };
+}
+
+void set_initial_state(Table& table, SphFluid& f, const std::vector<FluidWall>& walls) {
     Table arrange = table.law("arrange");
     const bool jittered = arrange.choice("law", {"lattice", "jittered"}) == "jittered";
     const double jitter = jittered ? arrange.number("jitter", {0.0, 0.5, true, false}) : 0.0;
     const auto seed = static_cast<std::uint64_t>(jittered ? arrange.integer("seed", 0) : 0);
     check_spacing(table, f);
-    fill_box(f, jitter, seed);
+    fill_box(f, jitter, seed, filled_part(table, walls));
+    if (f.slots() == 0) table.fail("arrange", "there is no place for the fluid");
+    line_walls(f, walls);
+    f.walls = walls;
     const auto initial = make_family<InitialField>(table.law("initial"));
-    const FluidNumbers numbers{f.domain.size, f.density, f.sound_speed, f.viscosity};
+    const FluidNumbers numbers{f.domain.size,
+                               f.density,
+                               f.sound_speed,
+                               f.viscosity,
+                               f.extras.stratified ? f.domain.gravity : Vec3(Vec3::Zero()),
+                               f.equation_of_state};
     for (std::size_t k = 0; k < f.slots(); ++k) {
         Vec3 x = Vec3::Zero();
         for (int c = 0; c < f.dimensions; ++c) x[c] = f.x[static_cast<std::size_t>(c)][k];
@@ -113,7 +135,22 @@ void set_initial_state(Table& table, SphFluid& f) {
 
 } // namespace
 
-SphFluid read_sph_fluid(Table& table, const Domain& domain) {
+std::vector<FluidWall> read_fluid_walls(std::vector<Table>& tables, const Domain& domain) {
+    std::vector<WallBody> bodies = make_walls(tables, domain.dimensions);
+    std::vector<FluidWall> walls;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        FluidWall wall{std::move(bodies[k])};
+        wall.slips = tables[k].choice("slip", {"no_slip", "free_slip"}) == "free_slip";
+        if (std::holds_alternative<TriangleMesh>(wall.body.shape)) {
+            if (domain.dimensions == 2) tables[k].fail("shape", "\"stl\" in a scene of two dimensions");
+            wall.fluid_is_inside = tables[k].choice("fluid_side", {"inside", "outside"}) == "inside";
+        }
+        walls.push_back(std::move(wall));
+    }
+    return walls;
+}
+
+SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<FluidWall>& walls) {
     SphFluid f;
     f.dimensions = domain.dimensions;
     f.domain = domain;
@@ -121,10 +158,8 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain) {
     read_numbers(table, f);
     read_models(table, f);
     read_forces(table, f);
-    for (int c = 0; c < f.dimensions; ++c)
-        if (!domain.periodic[static_cast<std::size_t>(c)])
-            table.fail("method", "\"sph\" has no walls yet: every side of the box must be periodic");
-    set_initial_state(table, f);
+    f.free_surface = table.has("free_surface") && table.flag("free_surface");
+    set_initial_state(table, f, walls);
     return f;
 }
 
@@ -133,7 +168,7 @@ std::vector<StepLimit> fluid_limits(const SphFluid& f) {
     const double damping = greatest_viscous_rate(f), force = f.body_force.norm();
     const double shift = f.shifting > 0.0 ? f.shifting * greatest_concentration_rate(f) : 0.0;
     return {{"acoustic", acoustic_share * f.h / f.sound_speed, "0.25 h/c"},
-            {"viscous", damping > 0.0 ? viscous_share / damping : none,
+            {"viscous", damping > 0.0 ? viscous_share / (damping * (1.0 + f.memory)) : none,
              "0.8 over the greatest rate of the viscous operator"},
             {"shifting", shift > 0.0 ? shifting_share / shift : none,
              "1 over the greatest rate at which shifting evens out the concentration"},

@@ -4,13 +4,18 @@
 #include "core/table.hpp"
 #include "schemes/stable_step.hpp"
 #include "sph/fluid.hpp"
+#include "sph/wall_particles.hpp"
 
 #include <vector>
 
 namespace plumb {
 
-/// Reads the [fluid] table and puts the particles in place. InputError for whatever cannot be meant.
-SphFluid read_sph_fluid(Table& table, const Domain& domain);
+/// The walls of the fluid: shapes, velocities and `slip`; for a mesh also `fluid_side`.
+std::vector<FluidWall> read_fluid_walls(std::vector<Table>& tables, const Domain& domain);
+
+/// Reads the [fluid] table and puts the particles in place, those of the walls as well. InputError for whatever cannot
+/// be meant.
+SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<FluidWall>& walls);
 
 /// Bounds of the step: a sound wave and the body force may each move by a share of h, diffusion of momentum and
 /// shifting undo a share of what they find.

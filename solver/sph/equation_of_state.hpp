@@ -23,6 +23,12 @@ struct Tait {
     double density(double p, double rho_0, double c) const {
         return rho_0 * std::pow(1.0 + gamma * p / (rho_0 * c * c), 1.0 / gamma);
     }
+    /// Pressure of the fluid at rest where a force has done the work `potential` [m2/s2] since p = 0 (g times depth):
+    /// the enthalpy, integral of dp/rho, inverted.
+    double hydrostatic_pressure(double potential, double rho_0, double c) const {
+        const double enthalpy = 1.0 + (gamma - 1.0) * potential / (c * c);
+        return rho_0 * c * c / gamma * (std::pow(enthalpy, gamma / (gamma - 1.0)) - 1.0);
+    }
 };
 
 /// p = c^2 (rho - rho_0).
@@ -32,6 +38,9 @@ struct LinearState {
                                   "Morris, Fox & Zhu 1997, J. Comput. Phys. 136, 214"};
     double pressure(double rho, double rho_0, double c) const { return c * c * (rho - rho_0); }
     double density(double p, double rho_0, double c) const { return rho_0 + p / (c * c); }
+    double hydrostatic_pressure(double potential, double rho_0, double c) const {
+        return rho_0 * c * c * std::expm1(potential / (c * c));
+    }
 };
 
 using EquationOfState = std::variant<Tait, LinearState>;

@@ -15,6 +15,9 @@ template <class Visit> void for_each_moving_field(SphFluid& f, Visit&& visit) {
         for (VectorField* field : {&f.x, &f.v, &f.a, &f.x_listed}) visit((*field)[c]);
     visit(f.rho);
     visit(f.drho);
+    if (f.memory == 0.0) return;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) visit(f.a_before[c]);
+    visit(f.drho_before);
 }
 
 void permute(Field<double>& field, const std::vector<std::int32_t>& from, Field<double>& spare) {
@@ -23,9 +26,20 @@ void permute(Field<double>& field, const std::vector<std::int32_t>& from, Field<
     std::swap(field, spare);
 }
 
+/// Puts positions along an axis inside the box, if it is periodic there.
+void wrap(Field<double>& x, const Domain& domain, std::size_t axis) {
+    if (!domain.periodic[axis]) return;
+    const double side = domain.size[static_cast<Eigen::Index>(axis)];
+    parallel_for(x.size(), [&](std::size_t k) {
+        x[k] -= side * std::floor(x[k] / side);
+        if (x[k] >= side) x[k] = 0.0; // the product is rounded
+    });
+}
+
 /// New lists for the positions `at`; all fields are put into the new order.
 void rebuild_for(SphFluid& f, const VectorField& at) {
-    const ClusterOrder order = rebuild(f.clusters, {at, f.id}, f.domain, f.dimensions, f.spacing);
+    const ClusterOrder order = rebuild(f.clusters, {at, f.id, f.boundary.x_listed}, f.domain, f.spacing);
+    list_mirrors(f);
     Field<double> spare;
     for_each_moving_field(f, [&](Field<double>& field) { permute(field, order.from, spare); });
     std::vector<std::int32_t> id(order.from.size());
@@ -36,6 +50,7 @@ void rebuild_for(SphFluid& f, const VectorField& at) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
         for (VectorField* field : {&f.spread, &f.dv_spread}) (*field)[c].assign(f.id.size(), 0.0);
     f.drho_spread.assign(f.id.size(), 0.0);
+    f.completeness.assign(f.id.size(), 1.0);
 }
 
 } // namespace
@@ -54,25 +69,15 @@ std::vector<std::int32_t> slots_of_ids(const SphFluid& fluid) {
 
 void renew_lists(SphFluid& f) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {
-        f.x_listed[c].resize(f.slots());
-        const double side = f.domain.size[static_cast<Eigen::Index>(c)];
-        const bool periodic = f.domain.periodic[c];
-        parallel_for(f.slots(), [&](std::size_t k) {
-            double& x = f.x[c][k];
-            if (periodic) {
-                x -= side * std::floor(x / side);
-                if (x >= side) x = 0.0; // the product is rounded
-            }
-            f.x_listed[c][k] = x;
-        });
+        for (Field<double>* x : {&f.x[c], &f.boundary.x[c], &f.boundary.mirror[c]}) wrap(*x, f.domain, c);
+        f.x_listed[c] = f.x[c];
+        f.boundary.x_listed[c] = f.boundary.x[c];
+        f.boundary.mirror_listed[c] = f.boundary.mirror[c];
     }
-    const VectorField at = f.x_listed;
-    rebuild_for(f, at);
+    f.boundary.travelled = 0.0;
+    rebuild_for(f, f.x_listed);
 }
 
-void restore_lists(SphFluid& f) {
-    const VectorField at = f.x_listed;
-    rebuild_for(f, at);
-}
+void restore_lists(SphFluid& f) { rebuild_for(f, f.x_listed); }
 
 } // namespace plumb

@@ -3,6 +3,7 @@
 
 #include "core/domain.hpp"
 #include "core/field.hpp"
+#include "sph/boundary.hpp"
 #include "sph/clusters.hpp"
 #include "sph/equation_of_state.hpp"
 #include "sph/kernels.hpp"
@@ -13,8 +14,6 @@
 #include <vector>
 
 namespace plumb {
-
-using VectorField = std::array<Field<double>, 3>; // components x, y, z; z unused in the plane
 
 struct SphFluid {
     // the models, fixed for the whole run
@@ -31,17 +30,24 @@ struct SphFluid {
     EquationOfState equation_of_state;
     ViscousTerm viscous_term;
     Extras extras;
-    double shifting = 0.0; // diffusivity of positions [m2/s], 0 without
+    double shifting = 0.0;     // diffusivity of positions [m2/s], 0 without
+    bool free_surface = false; // particles near one are not shifted
+    double memory = 0.0;       // share of the rates before the last ones in the predictor (advance_fluid.hpp)
 
     // what changes in time
     VectorField x, v, a;     // position [m], velocity [m/s], acceleration of the last evaluation [m/s2]
     Field<double> rho, drho; // density [kg/m3], its rate in the last evaluation [kg/(m3 s)]
+    VectorField a_before;    // and of the evaluation before that, where memory > 0
+    Field<double> drho_before;
     // of the last evaluation, for shifting; empty without: -grad C [1/m], and what v and rho change by along it
     VectorField spread, dv_spread;
     Field<double> drho_spread;
+    Field<double> completeness;   // 1 where particles are all around, about half of it at a free surface
     VectorField x_listed;         // where the particles were when the lists were built [m]
     std::vector<std::int32_t> id; // order of creation; -1 in copies
     FluidClusters clusters;
+    std::vector<FluidWall> walls;
+    BoundaryParticles boundary; // of walls and open sides
 
     std::size_t slots() const { return id.size(); }
 };
@@ -58,6 +64,11 @@ std::size_t particle_count(const SphFluid& fluid);
 inline double pressure(const SphFluid& f, double rho) {
     return std::visit([&](const auto& law) { return law.pressure(rho, f.density, f.sound_speed); },
                       f.equation_of_state);
+}
+
+/// Density of a pressure [kg/m3].
+inline double density_of_pressure(const SphFluid& f, double p) {
+    return std::visit([&](const auto& law) { return law.density(p, f.density, f.sound_speed); }, f.equation_of_state);
 }
 
 /// Sorts the particles and builds new lists for the present positions; all fields move along.

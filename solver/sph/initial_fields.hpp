@@ -5,6 +5,7 @@
 
 #include "core/laws.hpp"
 #include "core/vec.hpp"
+#include "sph/equation_of_state.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -24,6 +25,8 @@ struct FluidNumbers {
     double density;     // [kg/m3]
     double sound_speed; // [m/s]
     double viscosity;   // dynamic [Pa s]
+    Vec3 gravity;       // that the particles feel [m/s2]
+    EquationOfState equation_of_state;
 };
 
 namespace detail {
@@ -37,6 +40,15 @@ struct RestField {
     static constexpr std::string_view name = "rest";
     static constexpr LawInfo info{"u = 0, p = 0", "any", "definition"};
     FlowState operator()(const Vec3& /*x*/, const FluidNumbers& /*f*/) const { return {}; }
+};
+
+/// u = 0 and one pressure everywhere: below zero the fluid is under tension.
+struct UniformPressureField {
+    static constexpr std::string_view name = "uniform_pressure";
+    static constexpr LawInfo info{"u = 0, p = pressure", "any", "definition"};
+    double pressure; // [Pa]
+    explicit UniformPressureField(Table& table) : pressure(table.number("pressure")) {}
+    FlowState operator()(const Vec3& /*x*/, const FluidNumbers& /*f*/) const { return {Vec3::Zero(), pressure}; }
 };
 
 /// The plane vortex u = -U cos kx sin ky, v = U sin kx cos ky, p = -rho U^2/4 (cos 2kx + cos 2ky), k = 2 pi/size.
@@ -97,6 +109,25 @@ struct SoundWaveField {
     }
 };
 
-using InitialField = std::variant<RestField, TaylorGreenField, TaylorGreenCube, ShearWaveField, SoundWaveField>;
+/// At rest under gravity below a level surface: p = 0 at the height `surface` and above, and below what the fluid's own
+/// compressibility makes of rho g d.
+struct HydrostaticField {
+    static constexpr std::string_view name = "hydrostatic";
+    static constexpr LawInfo info{"u = 0, integral of dp/rho = g (surface - height)",
+                                  "gravity along one axis, pressure = \"full\"", "Batchelor 1967, sec. 1.4"};
+    double surface; // height against gravity, from the origin [m]
+    explicit HydrostaticField(Table& table) : surface(table.number("surface")) {}
+    FlowState operator()(const Vec3& x, const FluidNumbers& f) const {
+        const double g = f.gravity.norm();
+        const double potential = larger(g * surface + f.gravity.dot(x), 0.0); // g times depth
+        return {
+            Vec3::Zero(),
+            std::visit([&](const auto& law) { return law.hydrostatic_pressure(potential, f.density, f.sound_speed); },
+                       f.equation_of_state)};
+    }
+};
+
+using InitialField = std::variant<RestField, UniformPressureField, TaylorGreenField, TaylorGreenCube, ShearWaveField,
+                                  SoundWaveField, HydrostaticField>;
 
 } // namespace plumb

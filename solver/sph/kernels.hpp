@@ -8,6 +8,7 @@
 #include "core/laws.hpp"
 #include "core/simd.hpp"
 
+#include <array>
 #include <numbers>
 #include <variant>
 
@@ -107,6 +108,29 @@ struct QuinticSpline {
 };
 
 using Kernel = std::variant<WendlandC2, WendlandC4, CubicSpline, QuinticSpline>;
+
+/// Integral of g(q) over the kernel's ball in units of h, by the midpoint rule.
+template <class KernelLaw, class G> double ball_integral(int dimensions, G&& g) {
+    constexpr int n = 2000;
+    double sum = 0.0;
+    for (int k = 0; k < n; ++k) {
+        const double q = KernelLaw::support * (k + 0.5) / n;
+        sum += g(q) * (dimensions == 2 ? q : q * q) * KernelLaw::support / n;
+    }
+    return (dimensions == 2 ? 2.0 : 4.0) * std::numbers::pi * sum;
+}
+
+/// Integral of W x^2/h^2 over the ball: the variance of the kernel along one axis, in units of h.
+template <class KernelLaw> double second_moment(int dimensions) {
+    static const std::array<double, 2> moment = [] {
+        std::array<double, 2> values{};
+        for (const int d : {2, 3})
+            values[static_cast<std::size_t>(d - 2)] =
+                KernelLaw::sigma(d) * ball_integral<KernelLaw>(d, [](double q) { return KernelLaw::w(q) * q * q; }) / d;
+        return values;
+    }();
+    return moment[static_cast<std::size_t>(dimensions - 2)];
+}
 
 /// Reach of a kernel in units of h.
 inline double support(const Kernel& kernel) {

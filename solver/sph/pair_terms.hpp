@@ -64,6 +64,7 @@ template <int d> struct Sums {
     Components<Pack, d> spread;                // -grad C, towards where particles are missing
     Components<Components<Pack, d>, d> grad_v; // of each component of the velocity
     Components<Pack, d> grad_rho;
+    Pack completeness; // sum V_b (x_b - x_a) . grad W, the divergence of the position
 };
 
 /// What the coefficients of the terms are made from.
@@ -168,16 +169,25 @@ struct Extras {
     double softening_sq = 0.0; // 0.01 h^2 [m2]
     double mass = 0.0;         // [kg], for the gradient of the density
     bool shifting = false;
+    bool stratified = false;                             // gravity compresses the fluid at rest
+    Components<double, 3> stratification{0.0, 0.0, 0.0}; // rho_0 g/(m c^2) [1/m4], [1/m3] in the plane
 
     bool idle() const { return diffusion == 0.0 && artificial == 0.0 && !shifting; }
 
     template <int d>
     [[gnu::always_inline]] void operator()(const PairState<d>& p, const Side& a, const Side& b, Sums<d>& sums) const {
         // d rho_a/dt = 2 delta h c sum (rho_b - rho_a) (x_b - x_a) . grad W/r^2 V_b (Molteni & Colagrossi 2009, Comput.
-        // Phys. Commun. 180, 861); (rho_b - rho_a) V_b = m (1 - V_b/V_a) and (x_b - x_a) . grad W/r^2 = -F
-        if (diffusion != 0.0)
-            sums.density_rate -= (broadcast<Pack>(diffusion) * p.f) *
-                                 (broadcast<Pack>(1.0) - b.volume * (broadcast<Pack>(1.0) / a.volume));
+        // Phys. Commun. 180, 861); (rho_b - rho_a) V_b = m (1 - V_b/V_a) and (x_b - x_a) . grad W/r^2 = -F. The
+        // density that belongs to hydrostatic pressure is left alone (Fourtakas et al. 2019, Comput. Fluids 190, 346).
+        if (diffusion != 0.0) {
+            Pack difference = broadcast<Pack>(1.0) - b.volume * (broadcast<Pack>(1.0) / a.volume);
+            if (stratified) {
+                Pack head = broadcast<Pack>(stratification.x) * p.dx.x + broadcast<Pack>(stratification.y) * p.dx.y;
+                if constexpr (d == 3) head += broadcast<Pack>(stratification.z) * p.dx.z;
+                difference += b.volume * head;
+            }
+            sums.density_rate -= (broadcast<Pack>(diffusion) * p.f) * difference;
+        }
         // dv_a/dt = sum m alpha c h/rho (dv . dx)/(r^2 + 0.01 h^2) grad W while approaching (Monaghan 1992, Annu. Rev.
         // Astron. Astrophys. 30, 543), with the mean of 1/rho
         if (artificial != 0.0) {
@@ -188,6 +198,7 @@ struct Extras {
         if (shifting) { // grad C = sum V_b grad W and, with differences, grad v and grad rho (Lind et al. 2012)
             const Pack weight = p.f * b.volume;
             subtract(sums.spread, weight, p.dx);
+            sums.completeness -= weight * p.r_sq;
             for_components<d>([&](Components<Pack, d>& grad, const Pack& dv) { subtract(grad, weight * dv, p.dx); },
                               sums.grad_v, p.dv);
             const Pack one = broadcast<Pack>(1.0);

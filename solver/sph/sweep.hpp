@@ -27,7 +27,7 @@ template <int d, class T> inline Components<T, d> components(const T& x, const T
 }
 
 constexpr std::size_t lookahead = 24; // neighbours whose record is asked for in advance
-static_assert(lookahead <= list_padding);
+static_assert(lookahead <= NeighbourLists::padding);
 
 template <class KernelLaw, int d, class... Terms>
 [[gnu::always_inline]] inline Sums<d> sum_over_neighbours(const FluidClusters& clusters, std::size_t cluster,
@@ -39,7 +39,7 @@ template <class KernelLaw, int d, class... Terms>
     const Pack scale = broadcast<Pack>(inverse_h);
     const Pack zero = broadcast<Pack>(0.0);
     const auto nothing = components<d>(zero, zero, zero);
-    Sums<d> sums{nothing, zero, nothing, components<d>(nothing, nothing, nothing), nothing};
+    Sums<d> sums{nothing, zero, nothing, components<d>(nothing, nothing, nothing), nothing, zero};
     const std::span<const std::int32_t> near = clusters.near(cluster);
     const std::int32_t* const list = near.data();
     for (std::size_t e = 0; e < near.size(); ++e) {
@@ -72,6 +72,7 @@ template <int d> void store_spread(SphFluid& f, std::size_t cluster, double grad
         },
         sums.spread, sums.grad_v);
     store(f.drho_spread, cluster, squared * dot(sums.grad_rho, sums.spread));
+    store(f.completeness, cluster, scale * sums.completeness * broadcast<Pack>(1.0 / d));
 }
 
 /// One pass over all clusters.

@@ -18,6 +18,7 @@ struct Cloud {
     int dimensions = 3;
     VectorField x;
     std::vector<std::int32_t> id;
+    VectorField passive{};
 
     std::size_t size() const { return id.size(); }
     Vec3 at(std::size_t k) const {
@@ -39,7 +40,7 @@ struct Built {
 Built build(const Cloud& cloud) {
     Built built;
     built.clusters.reach = reach, built.clusters.skin = skin;
-    built.order = rebuild(built.clusters, {cloud.x, cloud.id}, cloud.domain, cloud.dimensions, spacing);
+    built.order = rebuild(built.clusters, {cloud.x, cloud.id, cloud.passive}, cloud.domain, spacing);
     return built;
 }
 
