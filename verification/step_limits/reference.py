@@ -87,13 +87,18 @@ class Lattice:
         return STRENGTH[term](self.d) * self.nu * total / (1.0 if term == "morris" else self.d)
 
 
-def predicted_limit(lattice, name):
+def decay_share(integrator):
+    """1/(1 + b): the greatest decay rate times the step at which the integrator is stable (README)."""
+    return {"midpoint": 1.0, "damped_midpoint": 1.0 / 1.5}[integrator]
+
+
+def predicted_limit(lattice, name, integrator):
     """The step limit `name` at factor 1, s, by its documented formula."""
     if name == "acoustic":
         return SHARE[name] * lattice.h / lattice.fluid["sound_speed"]
     if name == "viscous":
         greatest = np.linalg.eigvalsh(lattice.viscosities()).max()
-        return SHARE[name] / max(greatest, lattice.phaseless_viscous_rate())
+        return SHARE[name] * decay_share(integrator) / max(greatest, lattice.phaseless_viscous_rate())
     return SHARE[name] / lattice.concentration_rates().max()
 
 
@@ -104,19 +109,29 @@ def midpoint_growth(z):
     return np.maximum(abs(half + root), abs(half - root))
 
 
+def damped_midpoint_growth(z, memory=0.5):
+    """The same with y* = y + dt/2 [(1 + b) y'_before - b y'_before_that]: (r - 1)(r^2 - z/2 [(1 + b) r - b]) = z r^2."""
+    a = 0.5 * (1.0 + memory) * z
+    companion = np.zeros((*z.shape, 3, 3), complex)
+    companion[..., 0, 0], companion[..., 0, 1] = 1.0 + z + a, -(a + 0.5 * memory * z)
+    companion[..., 0, 2] = 0.5 * memory * z
+    companion[..., 1, 0] = companion[..., 2, 1] = 1.0
+    return abs(np.linalg.eigvals(companion)).max(axis=-1)
+
+
 def shifting_growth(z):
     """|r| of x <- x + D dt (-grad C): r = 1 + z, for z = -rate dt."""
     return abs(1.0 + z)
 
 
 # integrator -> growth factor of a step; another integrator needs its characteristic polynomial here, nothing else.
-INTEGRATORS = {"midpoint": midpoint_growth}
+INTEGRATORS = {"midpoint": midpoint_growth, "damped_midpoint": damped_midpoint_growth}
 
 
 def boundary(scene, name):
     """The factor on the limit `name` at which the fastest wave of the box grows by GROWTH within the run."""
     lattice = Lattice(scene)
-    limit = predicted_limit(lattice, name)
+    limit = predicted_limit(lattice, name, scene["time"]["integrator"])
     shifts = name == "shifting"
     rates = -lattice.concentration_rates().max() if shifts else lattice.rates().ravel()
     growth = shifting_growth if shifts else INTEGRATORS[scene["time"]["integrator"]]
