@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from .bisection_file import WorkPrecision, read_bisections, read_work_precision
 from .metrics import METRICS
 from .strict import CaseError, is_number, toml_table
 
@@ -16,10 +17,12 @@ FEWEST_FOR_ORDER = 3  # two points fit every slope and leave no residual
 
 @dataclass(frozen=True)
 class Variant:
-    """A named set of scene overrides; `swept` is False for a variant that runs once, without the sweep."""
+    """A named set of scene overrides; `swept` is False for a variant that runs once, without the sweep, and `values` says how many
+    of the sweep's values it runs at most (None: all)."""
     name: str
     overrides: dict = field(default_factory=dict)
     swept: bool = True
+    values: int = None
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,8 @@ class Case:
     checks: tuple
     must_fail: tuple
     figures: tuple
+    bisections: tuple = ()
+    work_precision: WorkPrecision = None
 
     def variant(self, name):
         """The variant called `name`."""
@@ -109,6 +114,10 @@ class Case:
         """The check with this id."""
         return next(c for c in self.checks if c.id == name)
 
+    def bisection_of(self, variant):
+        """The bisection that varies `variant`, or None."""
+        return next((b for b in self.bisections if variant.name in b.variants), None)
+
     def runs_in(self, variant, tier):
         """Whether `tier` judges `variant`; one that no check names is only shown, in every tier."""
         judging = [check for check in self.checks if variant.name in check.variants]
@@ -116,7 +125,7 @@ class Case:
 
     def values_of(self, variant, tier):
         """Sweep values that `variant` runs in `tier`; (None,) without a sweep."""
-        return self.sweep.values_of(tier) if self.sweep and variant.swept else (None,)
+        return self.sweep.values_of(tier)[:variant.values] if self.sweep and variant.swept else (None,)
 
 
 def read_case(folder):
@@ -131,8 +140,10 @@ def read_case(folder):
     sweep = read_sweep(table.table("sweep", "[sweep]"))
     variants = read_variants(table, sweep)
     checks = read_checks(table, reference, variants, sweep)
+    bisections = read_bisections(table, variants, sweep)
     case = Case(folder.name, folder, summary, source, reference, area, variants, sweep, checks,
-                read_must_fail(table, checks, variants, sweep), read_figures(table))
+                read_must_fail(table, checks, variants, sweep), read_figures(table), bisections,
+                read_work_precision(table, checks, variants, bisections))
     table.finish()
     return case
 
@@ -157,8 +168,12 @@ def read_variants(table, sweep):
     for entry in table.tables("variant"):
         name = entry.name("name")
         entry.where = f"[[variant]] '{name}'"
-        variant = Variant(name, entry.dictionary("set", {}), entry.flag("sweep", True))
+        most = len(sweep.values) if sweep else 0
+        variant = Variant(name, entry.dictionary("set", {}), entry.flag("sweep", True),
+                          entry.integer("values", None, lowest=1, highest=most))
         entry.finish()
+        if variant.values and not variant.swept:
+            raise entry.error("values", "is given, but the variant is not swept")
         if any(v.name == name for v in variants):
             raise entry.error("name", "is used twice")
         if sweep and variant.swept and sweep.parameter in variant.overrides:
@@ -239,6 +254,8 @@ def refuse_impossible_order(entry, check, variants, sweep):
     for variant in variants:
         if variant.name in check.variants and not variant.swept:
             raise entry.error("order", f"is asked of variant '{variant.name}', which has sweep = false")
+        if variant.name in check.variants and variant.values and variant.values < FEWEST_FOR_ORDER:
+            raise entry.error("order", f"is asked of variant '{variant.name}', which has values = {variant.values}")
     for tier in check.tiers:
         count = len(sweep.values_of(tier))
         if count < FEWEST_FOR_ORDER:

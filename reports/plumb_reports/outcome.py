@@ -4,6 +4,8 @@ import json
 from pathlib import Path
 
 from . import baseline, history, pages, report, verdicts
+from .bisection import bisected_variants
+from .bisection_figure import bisection_pictures
 from .case_file import read_case
 from .extra_figures import authors_pictures, authors_table, stated_pictures, thumbnail
 from .figures import check_pictures
@@ -14,6 +16,7 @@ from .plan import tier_plans
 from .reference_file import Reference
 from .runner import executed
 from .twins import judged_twins
+from .work_precision import work_precision, work_precision_pictures
 
 
 def judged_case(case_folder, tier, plumb, planted, build, jobs):
@@ -36,8 +39,11 @@ def judged_case(case_folder, tier, plumb, planted, build, jobs):
 def tier_report(case, tier, plumb, jobs, folder, reference):
     """Report, figures and page of the tiers quick, full and campaign."""
     runs = executed(case, tier_plans(case, tier, folder / "runs"), plumb, jobs)
+    runs += bisected_variants(case, tier, folder / "runs", plumb, jobs, reference)
     judged = judgements(case, tier, runs, reference)
-    problems, pictures = [], check_pictures(judged)
+    precision = work_precision(case, runs, reference)
+    problems = []
+    pictures = work_precision_pictures(case, precision) + bisection_pictures(case, runs, judged) + check_pictures(judged)
     for extend in (lambda: stated_pictures(case, runs, reference), lambda: authors_pictures(runs, reference)):
         try:
             pictures += extend()
@@ -48,15 +54,21 @@ def tier_report(case, tier, plumb, jobs, folder, reference):
         table = authors_table(runs, reference)
     except NotComparable as error:
         problems.append(str(error))
-    content = report.report(case, tier, runs, [report.check_entry(j) for j in judged], problems)
+    content = report.report(case, tier, single_runs(runs), [report.check_entry(j) for j in judged], problems)
+    content["work_precision"] = precision
     write_report(case, folder, content, pictures, table, thumbnail(judged))
     return content
+
+
+def single_runs(runs):
+    """`runs` with every bisected variant replaced by the runs of its bisection."""
+    return [trial for run in runs for trial in run.trials]
 
 
 def twins_report(case, plumb, planted, jobs, folder, reference):
     """Report and page of the tier must_fail."""
     twins = judged_twins(case, plumb, planted, jobs, folder / "runs", reference)
-    runs = [run for twin in twins for part in (twin.broken, twin.control) if part for run in part.runs]
+    runs = single_runs(run for twin in twins for part in (twin.broken, twin.control) if part for run in part.runs)
     content = report.report(case, "must_fail", runs, [report.twin_entry(twin) for twin in twins], [])
     content["without_twin"] = [c.id for c in case.checks if c.id not in {twin.breaks for twin in case.must_fail}]
     write_report(case, folder, content, [], None, None)

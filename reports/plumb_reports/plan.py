@@ -16,9 +16,10 @@ class Plan:
 
 
 def tier_plans(case, tier, folder):
-    """The plans of `tier`, variant by variant, coarse to fine. A variant that only other tiers judge is not run."""
+    """The plans of `tier`, variant by variant, coarse to fine. A variant that only other tiers judge is not run; the runs
+    of a bisected one are not known beforehand."""
     return [plan(case, variant, value, folder / variant.name / f"{i:02d}")
-            for variant in case.variants if case.runs_in(variant, tier)
+            for variant in case.variants if case.runs_in(variant, tier) and not case.bisection_of(variant)
             for i, value in enumerate(case.values_of(variant, tier))]
 
 

@@ -24,7 +24,7 @@ def report(case, tier, runs, check_entries, problems):
 def run_entry(run):
     """One run: what was varied, what it cost, how it ended."""
     return {"variant": run.variant, "parameter": run.parameter, "value": run.value, **run.cost(), "exit": run.exit,
-            "failure": run.failure, "overrides": run.overrides}
+            "failure": run.failure, "outcome": run.outcome, "overrides": run.overrides}
 
 
 def check_entry(judgement):

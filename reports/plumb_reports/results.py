@@ -14,6 +14,7 @@ class Run:
     """A finished run of the solver.
 
     variant, parameter, value    which run this is; value is None without a sweep
+    outcome                      of a bisection's run: "stable", or why it was not
     exit, failure                exit code and the reason why the run cannot be used (None when it can)
     info                         run.json as a dict
     scene                        the merged scene as a dict, overrides included
@@ -25,6 +26,7 @@ class Run:
     def __init__(self, plan, parameter, exit_code, failure):
         self.variant, self.value, self.overrides, self.folder = plan.variant, plan.value, plan.overrides, plan.folder
         self.parameter = parameter
+        self.outcome = None  # of a bisection: "stable", or why not
         self.exit = exit_code
         self.failure = failure or self.missing_output()
 
@@ -45,6 +47,15 @@ class Run:
     def scene(self):
         """The scene that was solved, as a dict."""
         return tomllib.loads(self.info["scene"])
+
+    @property
+    def trials(self):
+        """The single runs that this stands for: itself."""
+        return [self]
+
+    def derived(self, quantity):
+        """A quantity that several runs decide together (bisection.Bisected); a single run has none."""
+        return NotImplemented
 
     def series(self, name):
         """(t [nt], v [nt] or [nt, n]) of the probe `name`; raises NotComparable when there is no such probe."""

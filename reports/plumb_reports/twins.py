@@ -7,6 +7,7 @@ does not count. Other checks may break as well; only the named one is demanded.
 from dataclasses import dataclass
 
 from . import verdicts
+from .bisection import bisected
 from .judge import Judgement, judgement
 from .plan import plan
 from .runner import executed
@@ -52,6 +53,10 @@ def judged_twins(case, plumb, planted, jobs, folder, reference):
 def twin_judgement(case, twin, overrides, plumb, jobs, folder, reference):
     """The Judgement of the named check on runs with `overrides`."""
     check, variant = case.check(twin.breaks), case.variant(twin.variant)
+    bisection = case.bisection_of(variant)
+    if bisection:
+        boundary = bisected(case, bisection, variant, check.twin_tier, folder, plumb, reference, overrides)
+        return judgement(check, twin.variant, check.twin_tier, [boundary], reference)
     plans = [plan(case, variant, value, folder / f"{k:02d}", overrides)
              for k, value in enumerate(twin_values(case, twin))]
     runs = executed(case, plans, plumb, jobs)

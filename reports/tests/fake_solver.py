@@ -2,7 +2,7 @@
 """Stands in for the solver in the judge's tests: v' = (u - v)/tau by a rule of known order, in plumb's result layout.
 
 The scene's [fake] table chooses the rule and the misbehaviour: rule = "trapezoid" (second order) | "euler" (first),
-gain = 1.0 (a factor on tau: wrong physics), noise = 0.0, exit = 0 (fails with that code), nan = false.
+gain = 1.0 (a factor on tau: wrong physics), noise = 0.0, exit = 0 (fails with that code, at steps above exit_above), nan = false.
 """
 
 import json
@@ -59,7 +59,8 @@ def write_results(folder, scene, scene_path, t, v):
             "flags": "", "scene": "\n".join(f"{k} = {toml_value(x)}" for k, x in scene.items()), "scene_hash": "h",
             "scene_path": str(scene_path), "overrides": [], "threads": 1, "processor": "fake", "start": "2000",
             "wall_s": 1e-6 * len(t), "cpu_s": scene["fake"]["cpu_s"], "peak_bytes": 1000, "steps": len(t) - 1,
-            "updates": len(t) - 1, "step": scene["time"]["step"], "ruling_limit": "drag", "limits": {}, "exit": 0}
+            "updates": len(t) - 1, "step": scene["time"]["step"], "ruling_limit": "drag",
+            "limits": {"drag": 1.25 * scene["time"]["step"]}, "exit": 0}
     (folder / "run.json").write_text(json.dumps(info), encoding="utf-8")
 
 
@@ -69,7 +70,7 @@ def main():
     scene_path = Path(arguments[1])
     settings = [arguments[i + 1] for i, word in enumerate(arguments) if word == "--set"]
     scene = overridden(tomllib.loads(scene_path.read_text(encoding="utf-8")), settings)
-    if scene["fake"]["exit"]:
+    if scene["fake"]["exit"] and scene["time"]["step"] > scene["fake"]["exit_above"]:
         print("error: it was asked for", file=sys.stderr)
         sys.exit(scene["fake"]["exit"])
     write_results(Path(arguments[arguments.index("-o") + 1]), scene, scene_path, *velocity(scene))

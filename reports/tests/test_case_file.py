@@ -33,6 +33,8 @@ def test_variants_and_campaign(case):
     read = read_case(case.folder)
     assert read.values_of(read.variant("a"), "campaign")[-1] == 0.001
     assert read.values_of(read.variant("b"), "full") == (None,)
+    few = replace(read.variant("a"), values=2)
+    assert read.values_of(few, "full") == read.values_of(few, "quick") == (0.05, 0.025)
     assert read.check("terminal").variants == ("a", "b")
 
 
@@ -89,6 +91,9 @@ MISTAKES = [
     ("value = 0.0125", 'variant = "other"', "'variant' is 'other'"),
     (r"\[sweep\]", '[[variant]]\nname = "a"\nset = {"time.step" = 1.0}\n\n[sweep]', "sets the sweep parameter"),
     (r"\[sweep\]", '[[variant]]\nname = "a"\nset = {"fake.tau" = 1.0}\nsweep = false\n\n[sweep]', "has sweep = false"),
+    (r"\[sweep\]", '[[variant]]\nname = "a"\nvalues = 9\n\n[sweep]', "'values' must be a whole number"),
+    (r"\[sweep\]", '[[variant]]\nname = "a"\nvalues = 2\n\n[sweep]', "which has values = 2"),
+    (r"\[sweep\]", '[[variant]]\nname = "a"\nvalues = 2\nsweep = false\n\n[sweep]', "the variant is not swept"),
     (r"\[sweep\]", "[[figure]]\nx = \"log\"\n\n[sweep]", "'quantity' is missing"),
     (r"\[sweep\]", "[[sweep]]", "'sweep' must be a table"),
 ]

@@ -2,21 +2,23 @@
 
 #include "sph/arrange_fluid.hpp"
 #include "sph/initial_fields.hpp"
+#include "sph/lattice_rates.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace plumb {
 
 namespace {
 
-// Shares of the three times: Morris, Fox & Zhu 1997, eq. 20 (0.25 h/c), of the stable step of the viscous operator, and
-// Monaghan 1992 (0.25 sqrt(h/f)).
-constexpr double acoustic_share = 0.25, viscous_share = 0.6, force_share = 0.25;
+// Shares of the four times: Morris, Fox & Zhu 1997, eq. 20 (0.25 h/c); of the stable step of the viscous operator, 1
+// over its greatest rate (verification/step_limits), which disorder raises up to 1.55 times (verification/disorder); 1
+// over the greatest rate of shifting, half of what is stable, with which no shift goes beyond the even place; Monaghan
+// 1992 (0.25 sqrt(h/f)).
+constexpr double acoustic_share = 0.25, viscous_share = 0.6, shifting_share = 1.0, force_share = 0.25;
 
 // Skin of the neighbour lists in spacings: wider ones are renewed less often but hold more pairs out of reach.
 constexpr double skin_in_spacings = 0.25;
@@ -217,50 +219,15 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<Fl
     return f;
 }
 
-namespace {
-
-/// Greatest rate at which the viscous sum damps anything, times h^2/nu: factor * integral of -W'/r, which the shortest
-/// waves feel (for Morris' term and Wendland C2: 7). A gradient taken twice damps no wave faster than the square of the
-/// integral of |dW/dx|. The step is stable up to a rate of 1/((1 + memory) step) (advance_fluid.hpp).
-double viscous_rate(const SphFluid& f) {
-    const int d = f.dimensions;
-    const auto integral_of = [&](int power) { // of -W' r^(power - 1)
-        return std::visit(
-            [&](const auto& kernel) {
-                using Law = std::decay_t<decltype(kernel)>;
-                return Law::sigma(d) *
-                       ball_integral<Law>(d, [power](double q) { return -Law::f(q) * (power == 0 ? 1.0 : q); });
-            },
-            f.kernel);
-    };
-    if (std::holds_alternative<DoubleGradient>(f.viscous_term)) { // the mean of |cos| is 2/pi, in space 1/2
-        const double gradient = (d == 2 ? 2.0 / std::numbers::pi : 0.5) * integral_of(1);
-        return gradient * gradient;
-    }
-    const double integral = integral_of(0);
-    const double per_viscosity = f.mass * f.mass / f.viscosity;
-    const double factor = std::visit(
-        [&](const auto& law) {
-            using Law = std::decay_t<decltype(law)>;
-            if constexpr (std::is_same_v<Law, Inviscid> || std::is_same_v<Law, DoubleGradient>)
-                return 0.0;
-            else if constexpr (std::is_same_v<Law, Morris>)
-                return law.coefficient * per_viscosity; // 2
-            else
-                return law.coefficient * per_viscosity / d; // acts along the line of centres only
-        },
-        f.viscous_term);
-    return factor * integral;
-}
-
-} // namespace
-
 std::vector<StepLimit> fluid_limits(const SphFluid& f) {
     const double none = std::numeric_limits<double>::infinity();
-    const double nu = f.viscosity / f.density, force = f.body_force.norm();
+    const double damping = greatest_viscous_rate(f), force = f.body_force.norm();
+    const double shift = f.shifting > 0.0 ? f.shifting * greatest_concentration_rate(f) : 0.0;
     return {{"acoustic", acoustic_share * f.h / f.sound_speed, "0.25 h/c"},
-            {"viscous", nu > 0.0 ? viscous_share * f.h * f.h / (nu * viscous_rate(f) * (1.0 + f.memory)) : none,
+            {"viscous", damping > 0.0 ? viscous_share / (damping * (1.0 + f.memory)) : none,
              "0.6 over the greatest rate of the viscous operator on a lattice"},
+            {"shifting", shift > 0.0 ? shifting_share / shift : none,
+             "1 over the greatest rate at which shifting evens out the concentration"},
             {"force", force > 0.0 ? force_share * std::sqrt(f.h / force) : none, "0.25 sqrt(h/f)"}};
 }
 

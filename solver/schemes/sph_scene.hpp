@@ -21,7 +21,8 @@ std::vector<OpenSide> read_open_sides(std::vector<Table>& inlets, std::vector<Ta
 SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<FluidWall>& walls,
                         const std::vector<OpenSide>& open_sides);
 
-/// Bounds of the step: a sound wave, diffusion of momentum, and the body force may each move by a share of h.
+/// Bounds of the step: a sound wave and the body force may each move by a share of h, diffusion of momentum and
+/// shifting undo a share of what they find.
 std::vector<StepLimit> fluid_limits(const SphFluid& fluid);
 
 } // namespace plumb
