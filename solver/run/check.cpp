@@ -111,17 +111,16 @@ Json sph_part(const Simulation& s) {
     for (std::size_t k = 0; k < f.slots(); ++k)
         fastest = std::max(fastest, std::hypot(f.v[0][k], f.v[1][k], f.dimensions == 3 ? f.v[2][k] : 0.0));
     const double nu = f.viscosity / f.density, none = std::numeric_limits<double>::infinity();
-    return {
-        {"particles", f.particles},
-        {"dimensions", f.dimensions},
-        {"kernel", law_name(f.kernel)},
-        {"h", f.h},
-        {"sound_speed", f.sound_speed},
-        {"speed", fastest},
-        {"Mach", fastest / f.sound_speed},
-        {"Re_per_m", nu > 0.0 ? fastest / nu : none},
-        {"acoustic_Re", nu > 0.0 ? f.h * f.sound_speed / nu : none},
-        {"artificial_nu_over_nu", nu > 0.0 ? f.extras.artificial * f.mass / (2.0 * (f.dimensions + 2)) / nu : none}};
+    return {{"particles", f.particles},
+            {"dimensions", f.dimensions},
+            {"kernel", law_name(f.kernel)},
+            {"h", f.h},
+            {"sound_speed", f.sound_speed},
+            {"speed", fastest},
+            {"Mach", fastest / f.sound_speed},
+            {"Re_per_m", nu > 0.0 ? fastest / nu : none},
+            {"acoustic_Re", nu > 0.0 ? f.h * f.sound_speed / nu : none},
+            {"artificial_nu_over_nu", nu > 0.0 ? artificial_nu(f) / nu : none}};
 }
 
 Json sph_cost_part(const Run& run) {

@@ -70,6 +70,7 @@ template <class Fluid, class Visit> void for_each_fluid_field(Fluid& f, Visit&& 
     }
     visit("sph/rho", f.rho);
     visit("sph/drho", f.drho);
+    if (!f.lengths.omega.empty()) visit("sph/omega", f.lengths.omega);
     if (f.memory == 0.0) return;
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
         visit(fmt::format("sph/a_before_{}", axis_names[c]), f.a_before[c]);

@@ -78,6 +78,14 @@ std::string provenance_json(const Scene& scene, const Simulation& simulation, co
         j["drag_range"] = {
             {"re_min", use.re_min}, {"re_max", use.re_max}, {"inside", use.inside}, {"outside", use.outside}};
     }
+    if (simulation.sph) {
+        const SphFluid& f = *simulation.sph;
+        j["sph"] = {{"particles", f.particles},
+                    {"boundary_particles", f.boundary.size()},
+                    {"h", f.h},
+                    {"sound_speed", f.sound_speed},
+                    {"artificial_nu", artificial_nu(f)}};
+    }
     j["exit"] = exit ? nlohmann::ordered_json(*exit) : nlohmann::ordered_json(nullptr);
     // A path may be no valid UTF-8; JSON must be.
     return j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

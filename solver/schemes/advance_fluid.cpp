@@ -174,6 +174,7 @@ void start(SphFluid& f) {
     renew_lists(f);
     fill_records(f, 0.0, 0.0);
     evaluate_terms(f);
+    if (std::holds_alternative<VariableOperators>(f.operators)) evaluate_terms(f); // now with its Omega
     add_sources(f, 0.0);
     if (f.memory == 0.0) return;
     f.a_before = f.a;

@@ -73,7 +73,8 @@ void read_models(Table& table, SphFluid& f) {
         f.extras.mass = f.mass;
     }
     f.extras.softening_sq = 0.01 * f.h * f.h;
-    f.clusters.reach = support(f.kernel) * f.h;
+    f.clusters.reach =
+        support(f.kernel) * f.h * (std::holds_alternative<VariableOperators>(f.operators) ? greatest_growth : 1.0);
     f.clusters.skin = skin_in_spacings * f.spacing;
 }
 

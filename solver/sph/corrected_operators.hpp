@@ -28,7 +28,31 @@ struct CorrectedOperators {
                                   "2022, arXiv 2107.11859"};
 };
 
-using Operators = std::variant<PlainOperators, CorrectedOperators>;
+/// Plain sums with a smoothing length of each particle's own, h (rho_0/rho)^(1/d) (variable_sweep.hpp).
+struct VariableOperators {
+    static constexpr std::string_view name = "variable_h";
+    static constexpr LawInfo info{"-sum m [p_a/(Omega_a rho_a^2) grad W(h_a) + p_b/(Omega_b rho_b^2) grad W(h_b)], "
+                                  "1/Omega_a sum m v_ab . grad W(h_a)",
+                                  "rho from 0.9 rho_0 on; conserves momentum and energy",
+                                  "Springel & Hernquist 2002, Mon. Not. R. Astron. Soc. 333, 649"};
+};
+
+using Operators = std::variant<PlainOperators, CorrectedOperators, VariableOperators>;
+
+inline constexpr double greatest_growth = 1.05; // of a variable smoothing length over that at rho_0
+
+/// Smoothing length of a record, as pairs need it.
+struct RecordLength {
+    double inverse_h;         // [1/m]
+    double factor;            // sigma/h^(d+2)
+    double factor_over_omega; // the same over Omega of the last evaluation
+};
+
+/// Smoothing lengths where they vary; empty otherwise.
+struct VariableLengths {
+    Field<RecordLength> of_record;
+    Field<double> omega; // [slots]
+};
 
 /// What the first pass of the corrected operators leaves for the second.
 struct CorrectedFields {

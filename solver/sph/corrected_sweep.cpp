@@ -70,7 +70,7 @@ template <int d> void resize_fields(SphFluid& f) {
 }
 
 /// Rates and gradients of a cluster from its sums.
-template <int d> void store_rates(SphFluid& f, std::size_t cluster, double gradient, const Sums<d>& sums) {
+template <int d> void store_corrected_rates(SphFluid& f, std::size_t cluster, double gradient, const Sums<d>& sums) {
     Pack lanes[8];
     load_cluster(f.clusters, cluster, lanes);
     const Pack scale = broadcast<Pack>(gradient), rho = broadcast<Pack>(f.mass) / lanes[7];
@@ -113,8 +113,9 @@ template <class KernelLaw, int d> void first_pass(SphFluid& f) {
         f.clusters.count,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t c = begin; c < end; ++c)
-                store_rates<d>(f, c, gradient,
-                               sum_over_neighbours<KernelLaw, d>(f.clusters, c, 1.0 / f.h, moment, viscous, extras));
+                store_corrected_rates<d>(
+                    f, c, gradient,
+                    sum_over_neighbours<KernelLaw, d>(f.clusters, c, 1.0 / f.h, moment, viscous, extras));
         },
         16);
 }

@@ -1,10 +1,12 @@
 #include "sph/corrected_sweep.hpp"
 #include "sph/sweep.hpp"
+#include "sph/variable_sweep.hpp"
 
 namespace plumb {
 
 void evaluate_terms(SphFluid& f) {
     if (std::holds_alternative<CorrectedOperators>(f.operators)) return evaluate_corrected(f);
+    if (std::holds_alternative<VariableOperators>(f.operators)) return evaluate_variable(f);
     std::visit([&](const auto& kernel) { evaluate_with<std::decay_t<decltype(kernel)>>(f); }, f.kernel);
 }
 

@@ -15,6 +15,7 @@ template <class Visit> void for_each_moving_field(SphFluid& f, Visit&& visit) {
         for (VectorField* field : {&f.x, &f.v, &f.a, &f.x_listed}) visit((*field)[c]);
     visit(f.rho);
     visit(f.drho);
+    if (!f.lengths.omega.empty()) visit(f.lengths.omega);
     if (f.memory == 0.0) return;
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) visit(f.a_before[c]);
     visit(f.drho_before);
@@ -72,6 +73,7 @@ void append_particle(SphFluid& f, const Vec3& x, const Vec3& v, double rho) {
         f.v[c].back() = v[static_cast<Eigen::Index>(c)];
     }
     f.rho.back() = rho;
+    if (!f.lengths.omega.empty()) f.lengths.omega.back() = 1.0;
     f.id.push_back(f.next_id++);
     ++f.particles;
 }

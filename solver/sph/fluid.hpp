@@ -54,6 +54,7 @@ struct SphFluid {
     std::size_t particles = 0; // number of them
     FluidClusters clusters;
     CorrectedFields corrected; // of the last evaluation; empty with plain operators
+    VariableLengths lengths;
     std::vector<FluidWall> walls;
     std::vector<OpenSide> open_sides;
     BoundaryParticles boundary; // of walls and open sides
@@ -72,6 +73,10 @@ inline FluidNumbers fluid_numbers(const SphFluid& f) {
 }
 
 inline TermScales term_scales(const SphFluid& f) { return {f.mass, f.viscosity, f.h, f.sound_speed, f.dimensions}; }
+
+/// Kinematic viscosity that the artificial viscosity adds to shear [m2/s]: alpha c h/(4 (d + 2)). For all pairs it
+/// would be twice that (Monaghan 2005, Rep. Prog. Phys. 68, 1703, sec. 4.2); the term acts on the approaching half.
+inline double artificial_nu(const SphFluid& f) { return f.extras.artificial * f.mass / (4.0 * (f.dimensions + 2)); }
 
 /// Slots of the particles, ascending by id.
 std::vector<std::int32_t> ordered_slots(const SphFluid& fluid);

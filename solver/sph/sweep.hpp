@@ -71,6 +71,19 @@ inline void store(Field<double>& field, std::size_t cluster, Pack value) {
     std::memcpy(&field[pack_width * cluster], &value, sizeof value);
 }
 
+/// Accelerations and density rates of a cluster: its sums times `factor`, and the body force.
+template <int d> void store_rates(SphFluid& f, std::size_t cluster, double factor, const Sums<d>& sums) {
+    const Pack scale = broadcast<Pack>(factor);
+    std::size_t axis = 0;
+    for_components<d>(
+        [&](const Pack& sum) {
+            store(f.a[axis], cluster, scale * sum + broadcast<Pack>(f.body_force[static_cast<Eigen::Index>(axis)]));
+            ++axis;
+        },
+        sums.acceleration);
+    store(f.drho, cluster, scale * sums.density_rate);
+}
+
 /// -grad C, and the derivatives of v and rho along it.
 template <int d> void store_spread(SphFluid& f, std::size_t cluster, double gradient, const Sums<d>& sums) {
     const Pack scale = broadcast<Pack>(gradient), squared = scale * scale;
@@ -89,22 +102,13 @@ template <int d> void store_spread(SphFluid& f, std::size_t cluster, double grad
 template <class KernelLaw, int d, class Viscous, class Others>
 void evaluate(SphFluid& f, const Viscous& viscous, const Others& others) {
     const double gradient = KernelLaw::sigma(d) / std::pow(f.h, d + 2);
-    const Pack scale = broadcast<Pack>(f.mass * gradient);
     parallel_chunks(
         f.clusters.count,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t c = begin; c < end; ++c) {
                 const Sums<d> sums = sum_over_neighbours<KernelLaw, d>(f.clusters, c, 1.0 / f.h, Continuity{},
                                                                        PressureTerm{}, viscous, others);
-                std::size_t axis = 0;
-                for_components<d>(
-                    [&](const Pack& sum) {
-                        store(f.a[axis], c,
-                              scale * sum + broadcast<Pack>(f.body_force[static_cast<Eigen::Index>(axis)]));
-                        ++axis;
-                    },
-                    sums.acceleration);
-                store(f.drho, c, scale * sums.density_rate);
+                store_rates<d>(f, c, f.mass * gradient, sums);
                 if (f.extras.shifting) store_spread<d>(f, c, gradient, sums);
             }
         },
