@@ -220,11 +220,27 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<Fl
     return f;
 }
 
+namespace {
+
+/// The plain midpoint step lets undamped sound grow by (omega dt)^4/4 a step (advance_fluid.hpp). Viscosity takes that
+/// away if the step is short enough, dt^3 < 4 beta/omega^4 with beta about nu/h^2 and omega about c/h for the least
+/// stable wave: from h c/nu = 100 on the limit shrinks with the third root of nu, down to a tenth, at which sound grows
+/// e-fold in no less than 2.5e5 h/c. Density diffusion damps far more than that.
+double sound_share(const SphFluid& f) {
+    constexpr double safe_reynolds = 100.0, least = 0.1, least_diffusion = 0.05;
+    if (f.memory > 0.0 || f.extras.diffusion >= 2.0 * least_diffusion * f.h * f.sound_speed) return 1.0;
+    const double nu = f.viscosity / f.density + artificial_nu(f);
+    return std::clamp(std::cbrt(safe_reynolds * nu / (f.h * f.sound_speed)), least, 1.0);
+}
+
+} // namespace
+
 std::vector<StepLimit> fluid_limits(const SphFluid& f) {
     const double none = std::numeric_limits<double>::infinity();
     const double damping = greatest_viscous_rate(f), force = f.body_force.norm();
     const double shift = f.shifting > 0.0 ? f.shifting * greatest_concentration_rate(f) : 0.0;
-    return {{"acoustic", acoustic_share * f.h / f.sound_speed, "0.25 h/c"},
+    return {{"acoustic", acoustic_share * sound_share(f) * f.h / f.sound_speed,
+             "0.25 h/c, less where nothing damps sound (integrator midpoint, no diffusion, h c/nu > 100)"},
             {"viscous", damping > 0.0 ? viscous_share / (damping * (1.0 + f.memory)) : none,
              "0.6 over the greatest rate of the viscous operator on a lattice"},
             {"shifting", shift > 0.0 ? shifting_share / shift : none,

@@ -222,13 +222,17 @@ TEST(SphScene, StepLimits) {
     for (const int d : {2, 3}) {
         Bench bench(scene_text(d, {{"viscosity", "3.0"}}));
         const std::vector<StepLimit>& limits = bench.simulation.timing.limits;
-        EXPECT_NEAR(seconds_of(limits, "acoustic"), 0.25 * 0.075 / 20.0, 1e-15);
+        const double sound = 0.25 * 0.075 / 20.0;
+        EXPECT_NEAR(seconds_of(limits, "acoustic"), std::cbrt(100.0 / 500.0) * sound, 1e-12); // h c/nu = 500, undamped
+        Bench damped(scene_text(d, {{"viscosity", "3.0"}, {"density_diffusion", "0.1"}}));
+        EXPECT_NEAR(seconds_of(damped.simulation.timing.limits, "acoustic"), sound, 1e-15);
         EXPECT_NEAR(seconds_of(limits, "viscous"), 0.6 / 7.0 * time, 1e-5 * time);
         EXPECT_NEAR(seconds_of(limits, "force"), 0.25 * std::sqrt(0.075 / 9.81), 1e-12);
         EXPECT_TRUE(std::isinf(seconds_of(limits, "shifting")));
     }
     Bench ideal(scene_text(2, {{"viscosity", "0.0"}, {"viscous_term", "\"none\""}, {"pressure", "\"dynamic\""}}));
     const std::vector<StepLimit> others = fluid_limits(ideal.fluid());
+    EXPECT_NEAR(seconds_of(others, "acoustic"), 0.1 * 0.25 * 0.075 / 20.0, 1e-15);
     EXPECT_TRUE(std::isinf(seconds_of(others, "viscous")));
     EXPECT_TRUE(std::isinf(seconds_of(others, "force")));
 }
