@@ -187,7 +187,7 @@ TEST(SphCorrected, RatesAreThoseOfTheFormulas) {
                 set_extras(f, delta, 0.0, delta > 0.0);
                 start(f);
                 std::vector<Slow> all;
-                for (const std::int32_t slot : slots_of_ids(f))
+                for (const std::int32_t slot : ordered_slots(f))
                     all.push_back(slow_gradients(f, static_cast<std::size_t>(slot)));
                 for (std::size_t k = 0; k < f.slots(); ++k)
                     if (f.id[k] >= 0) expect_slow_rates(f, all, k, delta);
@@ -234,7 +234,7 @@ TEST(SphCorrected, ParticlesInARowGetThePlainGradient) {
         SphFluid f = corrected(box_of_dimensions(d, Vec3::Constant(1.0), nowhere), WendlandC2{}, 1.5, 0.0);
         for (const double x : {0.1, 0.2, 0.3, 2.0}) put(f, Vec3(x, 0.0, 0.0), Vec3(x * x, 0.0, 0.0), f.density);
         start(f);
-        for (const std::int32_t slot : slots_of_ids(f)) {
+        for (const std::int32_t slot : ordered_slots(f)) {
             const auto a = static_cast<std::size_t>(slot);
             double divergence = 0.0;
             for_neighbours(f, a, [&](std::size_t b, const Vec3& /*dx*/, const Vec3& grad, double volume) {
@@ -259,7 +259,7 @@ TEST(SphCorrected, LosesLittleMomentum) {
     const auto mean_velocity = [&] {
         Vec3 sum = Vec3::Zero();
         for (const std::size_t slot : slots_by_id(f)) sum += entry(f, f.v, slot);
-        return Vec3(sum / static_cast<double>(particle_count(f)));
+        return Vec3(sum / static_cast<double>(f.particles));
     };
     set_extras(f, 0.1, 0.0, true);
     f.shifting = 4.0 * f.h * 2.0;
