@@ -95,7 +95,7 @@ void write_fluid(Hdf5Writer& file, const SphFluid& f) {
         }
         rho[k] = f.rho[s];
         p[k] = pressure(f, f.rho[s]);
-        id[k] = static_cast<std::int32_t>(k);
+        id[k] = f.id[s];
     }
     file.write("fluid/x", std::span<const double>(x), {n, 3});
     file.write("fluid/v", std::span<const double>(v), {n, 3});
@@ -104,6 +104,29 @@ void write_fluid(Hdf5Writer& file, const SphFluid& f) {
     file.write("fluid/id", id);
     for (const auto& [name, units] : {std::pair{"x", "m"}, {"v", "m/s"}, {"rho", "kg/m3"}, {"p", "Pa"}, {"id", "1"}})
         file.attribute(fmt::format("fluid/{}", name), "units", std::string(units));
+}
+
+/// Particles of walls and open sides with the state that the fluid saw last; `side` numbers the open sides, -1 at
+/// walls.
+void write_boundary(Hdf5Writer& file, const SphFluid& f) {
+    const std::size_t n = f.boundary.size();
+    if (n == 0) return;
+    std::vector<double> x(3 * n), v(3 * n), p(n);
+    for (std::size_t k = 0; k < n; ++k) {
+        const FluidRecord& r = f.clusters.records[static_cast<std::size_t>(f.clusters.record_of_passive[k])];
+        const std::array<double, 3> velocity{r.u, r.v, r.w};
+        for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {
+            x[3 * k + c] = f.boundary.x[c][k];
+            v[3 * k + c] = velocity[c];
+        }
+        p[k] = r.p_over_rho_sq * (f.mass / r.volume) * (f.mass / r.volume);
+    }
+    file.write("walls/x", std::span<const double>(x), {n, 3});
+    file.write("walls/v", std::span<const double>(v), {n, 3});
+    file.write("walls/p", p);
+    file.write("walls/side", f.boundary.side);
+    for (const auto& [name, units] : {std::pair{"x", "m"}, {"v", "m/s"}, {"p", "Pa"}, {"side", "1"}})
+        file.attribute(fmt::format("walls/{}", name), "units", std::string(units));
 }
 
 /// What a set of points of a snapshot shows in ParaView.
@@ -210,7 +233,10 @@ void write_series(const std::string& path, const std::vector<Probe>& probes) {
 void write_snapshot(const std::string& path, const Simulation& simulation) {
     Hdf5Writer file(path);
     if (simulation.grains.grains.size() > 0 || !simulation.sph) write_grains(file, simulation.grains.grains);
-    if (simulation.sph) write_fluid(file, *simulation.sph);
+    if (simulation.sph) {
+        write_fluid(file, *simulation.sph);
+        write_boundary(file, *simulation.sph);
+    }
     file.attribute("/", "time", static_cast<double>(simulation.grains.step) * simulation.timing.dt);
     file.attribute("/", "time_units", std::string("s"));
     file.attribute("/", "step", simulation.grains.step);

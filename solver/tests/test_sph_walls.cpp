@@ -315,3 +315,70 @@ TEST(SphOpenSides, SameBitsForAnyNumberOfThreads) {
     expect_same_bits(one.fluid(), two.fluid());
     expect_same_bits(one.fluid(), four.fluid());
 }
+
+namespace {
+
+/// The cube [0.3, 0.7]^3, corners in any order of turning.
+TriangleMesh cube() {
+    std::vector<Vec3> soup;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double at : {0.3, 0.7}) {
+            const auto corner = [&](double a, double b) {
+                Vec3 x;
+                x[axis] = at, x[(axis + 1) % 3] = a, x[(axis + 2) % 3] = b;
+                return x;
+            };
+            const std::array<Vec3, 4> face{corner(0.3, 0.3), corner(0.7, 0.3), corner(0.7, 0.7), corner(0.3, 0.7)};
+            const bool outward = at > 0.5;
+            for (const auto& t : {std::array{0, 1, 2}, std::array{0, 2, 3}})
+                for (int k = 0; k < 3; ++k)
+                    soup.push_back(face[static_cast<std::size_t>(t[static_cast<std::size_t>(outward ? k : 2 - k)])]);
+        }
+    return TriangleMesh(joined_triangles(soup));
+}
+
+} // namespace
+
+// A mesh that is solid on the wrong side, or a depth measured from the wrong face.
+TEST(SphWalls, ClosedMeshesKnowTheirSide) {
+    std::vector<FluidWall> block{{WallBody{"block", cube()}, false, false}}, vessel = block;
+    vessel[0].fluid_is_inside = true;
+    const Vec3 inside(0.5, 0.45, 0.36), outside(0.2, 0.5, 0.5);
+    EXPECT_TRUE(is_solid(block, inside));
+    EXPECT_FALSE(is_solid(block, outside));
+    EXPECT_FALSE(is_solid(vessel, inside));
+    EXPECT_TRUE(is_solid(vessel, outside));
+    const Penetration deep = penetration(block, inside, 0.0, 1.0);
+    EXPECT_NEAR(deep.depth, 0.06, 1e-12);
+    EXPECT_LT((deep.normal - Vec3(0.0, 0.0, -1.0)).norm(), 1e-9); // out of the block, into the fluid
+    const Penetration out = penetration(vessel, outside, 0.0, 1.0);
+    EXPECT_NEAR(out.depth, 0.1, 1e-12);
+    EXPECT_LT((out.normal - Vec3(1.0, 0.0, 0.0)).norm(), 1e-9);
+    EXPECT_EQ(penetration(block, inside, 0.0, 0.01).depth, 0.0); // farther from the surface than is asked for
+}
+
+// Pressure of a fluid at rest: its derivative by g times depth is the density.
+TEST(SphWalls, HydrostaticPressureHasTheSlopeOfDensity) {
+    for_each_law<EquationOfState>([](auto law) {
+        const double rho = 1000.0, c = 20.0, potential = 9.0, e = 1e-4;
+        const double slope =
+            (law.hydrostatic_pressure(potential + e, rho, c) - law.hydrostatic_pressure(potential - e, rho, c)) /
+            (2.0 * e);
+        EXPECT_NEAR(slope, law.density(law.hydrostatic_pressure(potential, rho, c), rho, c), 1e-4);
+        EXPECT_EQ(law.hydrostatic_pressure(0.0, rho, c), 0.0);
+    });
+}
+
+// A fill that is shifted or inverted, and a surface that is a sine.
+TEST(SphWalls, FillsCutTheBox) {
+    Bench part(scene_text(channel(), "fill = {law = \"box\", lower = [0.0, 0.0], upper = [0.5, 0.4]}"));
+    EXPECT_EQ(part.fluid().particles, 80U);
+    Bench wave(scene_text(channel(),
+                          "fill = {law = \"wave\", axis = \"y\", depth = 0.4, amplitude = 0.1, wave_length = 1.0}"));
+    const SphFluid& f = wave.fluid();
+    for (std::size_t k = 0; k < f.slots(); ++k)
+        EXPECT_LE(f.x[1][k], 0.4 + 0.1 * std::cos(2.0 * std::numbers::pi * f.x[0][k]));
+    EXPECT_EQ(f.particles, 160U); // the wave has no volume of its own
+    expect_refused(scene_text(channel(), "fill = {law = \"box\", lower = [0.0, 0.9], upper = [0.5, 1.0]}"),
+                   {"fluid.arrange", "no place"});
+}
