@@ -134,7 +134,7 @@ struct RotatingSquareField {
         return {rate * Vec3(-r[1], r[0], 0.0), f.density * rate * rate * side * side * shape(r[0] / side, r[1] / side)};
     }
 
-  private:
+private:
     /// p/(rho rate^2 L^2) at places in units of L from the middle; zero outside. The terms left out sum to < 1e-6.
     static double shape(double a, double b) {
         if (std::abs(a) >= 0.5 || std::abs(b) >= 0.5) return 0.0;
