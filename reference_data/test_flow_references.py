@@ -259,3 +259,23 @@ def test_cylinder_cells_and_the_measured_permeability():
         u = reference.reference("superficial_velocity", scene, None)
         drag = cylinder_arrays.force(0.2, reference.cell(scene).array) * 1e-3 * u
         assert reference.reference("force_per_length", scene, None) == pytest.approx(0.8 * drag, rel=1e-5)
+
+
+# --- rotating_patch ---
+
+
+def test_rotating_patch_by_potential_flow():
+    """The torsion problem at first; then the corner's node of the surface flies straight, which is not built in."""
+    reference = case("rotating_patch")
+    waist, middle = reference.shape(0.02)
+    assert waist == pytest.approx(0.5, abs=1e-4) and middle == pytest.approx(-0.1473, abs=1e-4)
+    z = 0.5 - 0.5j * np.cos(np.pi * (np.arange(reference.NODES) + 0.5) / reference.NODES)
+    phi, dt = np.zeros(reference.NODES), 1.0 / 400
+    start = np.abs(z[-1])
+    for _ in range(200):  # to rate t = 0.5, midpoint rule
+        half = reference.rates(z, phi)
+        rate = reference.rates(z + 0.5 * dt * half[0], phi + 0.5 * dt * half[1])
+        z, phi = z + dt * rate[0], phi + dt * rate[1]
+    assert np.abs(z[-1]) / start == pytest.approx(math.sqrt(1.25), rel=5e-4)
+    around = np.concatenate([1j**n * z for n in range(4)])
+    assert 0.5 * np.sum((np.conj(around) * np.roll(around, -1)).imag) == pytest.approx(1.0, abs=1e-4)
