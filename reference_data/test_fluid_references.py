@@ -262,7 +262,8 @@ def test_sound_lattice_and_limits():
 
 def test_hydrostatic_column():
     reference = case("hydrostatic")
-    s = scene([0.3, 0.2, 2.0], {"law": "hydrostatic", "depth": 1.0}, gravity=(0.0, 0.0, -9.81), sound_speed=30.0)
+    fill = {"law": "box", "lower": [0.0, 0.0, 0.0], "upper": [0.3, 0.2, 1.0]}
+    s = scene([0.3, 0.2, 2.0], {"law": "hydrostatic", "surface": 1.0}, gravity=(0.0, 0.0, -9.81), sound_speed=30.0, fill=fill)
     column = reference.Column(s)
     d = np.linspace(0.0, 1.0, 9)
     gradient = (column.pressure(d + 1e-3) - column.pressure(d - 1e-3)) / 2e-3
@@ -279,7 +280,8 @@ def test_hydrostatic_column():
 
 
 def test_incompressible_limit_of_the_column():
-    s = scene([1.0, 2.0], {"law": "hydrostatic", "depth": 1.0}, gravity=(0.0, -9.81), sound_speed=3000.0)
+    fill = {"law": "box", "lower": [0.0, 0.5], "upper": [1.0, 1.5]}
+    s = scene([1.0, 2.0], {"law": "hydrostatic", "surface": 1.5}, gravity=(0.0, -9.81), sound_speed=3000.0, fill=fill)
     column = case("hydrostatic").Column(s)
     np.testing.assert_allclose(column.pressure([0.1, 0.8]), column.incompressible_pressure([0.1, 0.8]), rtol=1e-6)
     assert column.base == 1.0 and column.axis == 1

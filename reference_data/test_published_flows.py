@@ -82,8 +82,8 @@ def test_start_of_the_vortex_in_si_units():
 
 
 def column(ratio):
-    initial = {"law": "dam_break", "width": 0.05715, "height": ratio * 0.05715}
-    return case("dam_break").Column({"domain": {"size": [0.5, 0.2], "gravity": [0.0, -9.81]}, "fluid": {"initial": initial}})
+    fill = {"law": "box", "lower": [0.0, 0.0], "upper": [0.05715, ratio * 0.05715]}
+    return case("dam_break").Column({"domain": {"size": [0.5, 0.2], "gravity": [0.0, -9.81]}, "fluid": {"fill": fill}})
 
 
 # Independent digitisations of the same experiment: PySPH (figure 3, n^2 = 2, a = 2.25 in) and TrixiParticles (n^2 = 1), T and Z.

@@ -150,7 +150,37 @@ struct HydrostaticField {
     }
 };
 
-using InitialField = std::variant<RestField, UniformPressureField, TaylorGreenField, TaylorGreenCube, ShearWaveField,
-                                  SoundWaveField, HydrostaticField, ChannelField, UniformField, ManufacturedField>;
+/// Rigid rotation of a square without walls, u = rate (y_c - y, x - x_c), with the pressure that vanishes on its sides:
+/// lap p = 2 rho rate^2. It is negative everywhere inside. With X, Y from a corner, L the side and n odd,
+///     p = rho rate^2 {X (X - L) + sum 8 L^2/(n pi)^3 sin(n pi X/L) cosh(n pi (Y - L/2)/L)/cosh(n pi/2)}
+struct RotatingSquareField {
+    static constexpr std::string_view name = "rotating_square";
+    static constexpr LawInfo info{"u = rate (y_c - y, x - x_c), lap p = 2 rho rate^2 with p = 0 on the sides",
+                                  "a square in the plane, sides along the axes", "Colagrossi 2005, thesis, Rome"};
+    double rate, side; // [1/s], [m]
+    Vec3 centre;       // [m]
+    explicit RotatingSquareField(Table& table)
+        : rate(table.number("rate")), side(table.number("side", positive)), centre(table.components("centre", 2)) {}
+    FlowState operator()(const Vec3& x, const FluidNumbers& f) const {
+        const Vec3 r = x - centre;
+        return {rate * Vec3(-r[1], r[0], 0.0), f.density * rate * rate * side * side * shape(r[0] / side, r[1] / side)};
+    }
+
+private:
+    /// p/(rho rate^2 L^2) at places in units of L from the middle; zero outside. The terms left out sum to < 1e-6.
+    static double shape(double a, double b) {
+        if (std::abs(a) >= 0.5 || std::abs(b) >= 0.5) return 0.0;
+        double sum = (a + 0.5) * (a - 0.5);
+        for (int n = 1; n < 200; n += 2) {
+            const double k = n * std::numbers::pi;
+            sum += 8.0 / (k * k * k) * std::sin(k * (a + 0.5)) * std::cosh(k * b) / std::cosh(0.5 * k);
+        }
+        return sum;
+    }
+};
+
+using InitialField =
+    std::variant<RestField, UniformPressureField, TaylorGreenField, TaylorGreenCube, ShearWaveField, SoundWaveField,
+                 HydrostaticField, RotatingSquareField, ChannelField, UniformField, ManufacturedField>;
 
 } // namespace plumb

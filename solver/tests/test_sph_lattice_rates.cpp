@@ -30,6 +30,7 @@ viscosity = 1.0
 spacing = 1.0
 smoothing = {}
 kernel = "{}"
+operators = "plain"
 equation_of_state = "linear"
 sound_speed = 1.0
 pressure = "full"

@@ -17,13 +17,15 @@ UNITS = {
     "height": "m",
     "mass": "kg",
     "pressure_error": "1",
-    "speed": "m/s",
+    "speed": "1",
+    "height_drift": "1",
+    "energy_growth": "1",
     "period": "s",
 }
 
 
 class Column:
-    """initial = {law = "hydrostatic", depth = H}: fluid of density rho_0 filled to H, then left to its own weight.
+    """fill = {law = "box", ...}: fluid of density rho_0 filled to the height H over the floor, then left to its own weight.
 
     Along the axis of gravity; the sides of the box give the base (size of the other axes; 1 m along z for a plane scene).
     """
@@ -32,7 +34,8 @@ class Column:
         fluid, gravity = scene["fluid"], scene["domain"]["gravity"]
         self.axis = int(np.argmax(np.abs(gravity)))
         self.g = abs(gravity[self.axis])
-        self.filled = fluid["initial"]["depth"]
+        self.filled = fluid["fill"]["upper"][self.axis] - fluid["fill"]["lower"][self.axis]
+        self.floor = fluid["fill"]["lower"][self.axis]
         self.rho, self.c = fluid["density"], fluid["sound_speed"]
         sides = [s for n, s in enumerate(scene["domain"]["size"]) if n != self.axis and s > 0.0]
         self.base = math.prod(sides)
@@ -73,6 +76,40 @@ def pressure_error(column, height, p):
     return float(np.sqrt(np.mean(error**2))), float(np.mean(error))
 
 
+def final_pressure_error(column, run):
+    """Root mean square of the last snapshot's pressures against the exact ones at the particles' own heights."""
+    fluid = run.snapshot(-1)["fluid"]
+    return pressure_error(column, fluid["x"][:, column.axis] - column.floor, fluid["p"])[0]
+
+
+def bottom_pressure(column, run):
+    """Pressure on the floor, Pa: of the lowest layer, and the weight of half a spacing."""
+    fluid, spacing = run.snapshot(-1)["fluid"], run.scene["fluid"]["spacing"]
+    height = fluid["x"][:, column.axis] - column.floor
+    lowest = height < spacing
+    return float(np.mean(fluid["p"][lowest] + column.rho * column.g * height[lowest]))
+
+
+def top(column, run, k):
+    """Mean height, m, of the particles of the k-th snapshot that were the top layer at first."""
+    first, now = run.snapshot(0)["fluid"], run.snapshot(k)["fluid"]
+    layer = first["x"][:, column.axis] > first["x"][:, column.axis].max() - 0.5 * run.scene["fluid"]["spacing"]
+    return float(np.mean(now["x"][np.isin(now["id"], first["id"][layer]), column.axis]))
+
+
+def height_drift(column, run):
+    """Change of the top layer's height from half time to the end, over H."""
+    count = len(run.snapshot_files())
+    return (top(column, run, -1) - top(column, run, count // 2)) / column.filled
+
+
+def energy_growth(run):
+    """Mean kinetic energy of the last quarter of the run over that of the second."""
+    t, energy = run.series("kinetic_energy")
+    end = t[-1]
+    return float(energy[t > 0.75 * end].mean() / energy[(t > 0.25 * end) & (t <= 0.5 * end)].mean())
+
+
 def reference(quantity, scene, t):
     column = Column(scene)
     if quantity in ("bottom_pressure", "height", "mass"):
@@ -81,6 +118,51 @@ def reference(quantity, scene, t):
         return float(column.density(column.height))
     if quantity == "period":
         return float(column.periods(1)[0])
-    if quantity in ("pressure_error", "speed"):
+    if quantity == "speed":
+        return np.zeros_like(np.asarray(t, float))
+    if quantity in ("pressure_error", "height_drift"):
         return 0.0
     raise KeyError(quantity)
+
+
+def measure(quantity, run):
+    column = Column(run.scene)
+    if quantity == "pressure_error":
+        return final_pressure_error(column, run)
+    if quantity == "bottom_pressure":
+        return bottom_pressure(column, run)
+    if quantity == "speed":
+        t, speed = run.series("greatest_speed")
+        return t, speed / math.sqrt(column.g * column.filled)
+    if quantity == "height_drift":
+        return height_drift(column, run)
+    if quantity == "energy_growth":
+        return energy_growth(run)
+    return NotImplemented
+
+
+def figures(runs):
+    """Error of the pressure over the height, and the greatest speed over time."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.0, 3.8), layout="constrained")
+    profile, speed = figure.subplots(1, 2)
+    for run in runs:
+        if run.failure:
+            continue
+        column, fluid = Column(run.scene), run.snapshot(-1)["fluid"]
+        label = f"{run.variant}, H/spacing = {column.filled / run.scene['fluid']['spacing']:.0f}"
+        height = fluid["x"][:, column.axis] - column.floor
+        layer = np.floor(height / run.scene["fluid"]["spacing"]).astype(int)
+        error = (fluid["p"] - column.pressure(column.height - np.minimum(height, column.height))) / column.bottom_pressure
+        layers = np.unique(layer)
+        mean = lambda values: [np.mean(values[layer == n]) for n in layers]  # noqa: E731
+        profile.plot(100.0 * np.array(mean(error)), np.array(mean(height)) / column.filled, lw=1.2, label=label)
+        t, v = run.series("greatest_speed")
+        speed.semilogy(t[1:], v[1:] / math.sqrt(column.g * column.filled), lw=1.2)
+    profile.set_xlabel("error of the pressure [% of rho g H]")
+    profile.set_ylabel("height/H")
+    profile.legend(fontsize="x-small")
+    speed.set_xlabel("t sqrt(g/H)")
+    speed.set_ylabel("greatest speed/sqrt(g H)")
+    return [("column", figure, "Mean error of the pressure of each layer at the end (left); greatest speed of any particle (right).")]

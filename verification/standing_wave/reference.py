@@ -4,12 +4,13 @@ import cmath
 import math
 
 import numpy as np
-from scipy.optimize import root
+from scipy.optimize import least_squares, root
 
 UNITS = {
     "elevation": "m",
     "frequency": "rad/s",
     "damping": "1/s",
+    "damping_operator": "1/s",
     "frequency_inviscid": "rad/s",
     "frequency_finite": "rad/s",
     "damping_estimate": "1/s",
@@ -18,21 +19,24 @@ UNITS = {
 
 
 class Wave:
-    """initial = {law = "standing_wave", amplitude = a, depth = H, wave_length = 2 pi/k, floor = "free_slip" | "no_slip"}.
+    """fill = {law = "wave", depth = H, amplitude = a, wave_length = 2 pi/k} over a floor, from rest; sides periodic or walls.
 
-    eta = a cos(kx) at t = 0, at rest; x along axis 0, z up from the still surface; `basin`: the no-slip walls, if any, stand at
-    crests, x = 0 and pi/k (walls_slip = false adds their layers to the estimate).
+    eta = a cos(kx) at t = 0; x along axis 0, z up from the still surface. Side walls, if any, stand at crests, x = 0 and
+    pi/k. `free_surface`: what the viscous term makes of a surface left alone, "stress" (no stress: physics) or "gradient"
+    (p = mu du/dn: the natural condition of nu lap u; README).
     """
 
-    def __init__(self, scene):
-        fluid, initial = scene["fluid"], scene["fluid"]["initial"]
+    def __init__(self, scene, free_surface="stress"):
+        fluid, fill = scene["fluid"], scene["fluid"]["fill"]
         self.g = max(abs(value) for value in scene["domain"]["gravity"])
         self.rho, self.nu = fluid["density"], fluid["viscosity"] / fluid["density"]
         self.c = fluid.get("sound_speed", math.inf)
-        self.amplitude, self.depth = initial["amplitude"], initial["depth"]
-        self.k = 2.0 * math.pi / initial["wave_length"]
-        self.no_slip = initial.get("floor", "free_slip") == "no_slip"
-        self.side_walls = not initial.get("walls_slip", True)
+        self.amplitude, self.depth = fill["amplitude"], fill["depth"]
+        self.k = 2.0 * math.pi / fill["wave_length"]
+        walls = {wall["name"]: wall["slip"] == "no_slip" for wall in scene.get("wall", [])}
+        self.no_slip, self.side_walls = walls.get("floor", False), walls.get("sides", False)
+        self.surface_share = {"stress": 2.0, "gradient": 1.0}[free_surface]
+        self.shear_share = self.surface_share - 1.0
         self.frequency = math.sqrt(self.g * self.k * math.tanh(self.k * self.depth))
 
     def potential_flow(self, x, z, t):
@@ -46,9 +50,9 @@ class Wave:
         return u, w, self.rho * self.g * (swing - z)
 
     def damping_estimate(self):
-        """Rate of the amplitude, 1/s: 2 nu k^2 plus the Stokes layers on no-slip floor and side walls (README, equation 2)."""
+        """Rate of the amplitude, 1/s: 2 nu k^2 (half of it with "gradient") plus the Stokes layers on no-slip floor and side walls (README, equation 2)."""
         layer = math.sqrt(0.5 * self.nu * self.frequency)
-        rate = 2.0 * self.nu * self.k**2
+        rate = self.surface_share * self.nu * self.k**2
         depth = 2.0 * self.k * self.depth
         if self.no_slip:
             rate += self.k * layer / math.sinh(depth)
@@ -78,8 +82,8 @@ class Wave:
         fall, sink = math.exp(-k * self.depth), cmath.exp(-m * self.depth)
         rows = []
         for q, top, bottom in ((k, 1.0, fall), (-k, fall, 1.0), (m, 1.0, sink), (-m, sink, 1.0)):
-            normal = s / k**2 * (nu * (q**3 - k**2 * q) - s * q) - g - 2.0 * nu * s * q
-            shear = q**2 + k**2
+            normal = s / k**2 * (nu * (q**3 - k**2 * q) - s * q) - g - self.surface_share * nu * s * q
+            shear = q**2 + self.shear_share * k**2
             floor = q if self.no_slip else q * q
             rows.append([normal * top / g, shear * top / k**2, bottom, floor * bottom / (m if self.no_slip else m * m)])
         return np.linalg.det(np.array(rows))
@@ -112,14 +116,41 @@ def surface_mode(x, eta, k):
     return float(np.linalg.lstsq(shapes, np.asarray(eta, float), rcond=None)[0][0])
 
 
+FREE_SURFACE = {"morris": "gradient", "monaghan_gingold": "stress"}  # what each viscous term does there (README)
+
+
+def fit(run):
+    """(damping, frequency), 1/s, of the swing A exp(-rate t) sin(w t + phase), least squares after the first period."""
+    wave = Wave(run.scene)
+    t, swing = run.series("swing")
+    late = t > 2.0 * math.pi / wave.frequency
+    t, swing = t[late], swing[late]
+
+    def misfit(parts):
+        return parts[0] * np.exp(-parts[1] * t) * np.sin(parts[2] * t + parts[3]) - swing
+
+    found = least_squares(misfit, [np.abs(swing).max(), wave.damping_estimate(), wave.frequency, 0.0], x_scale="jac")
+    return float(found.x[1]), float(found.x[2])
+
+
+def mean_square_share(wave, end):
+    """Mean of exp(2 s t) over the fitted times: what is left of the square of the amplitude, and of its effect on frequency."""
+    rate, start = -2.0 * wave.exponent().real, 2.0 * math.pi / wave.frequency
+    return (math.exp(-rate * start) - math.exp(-rate * end)) / (rate * (end - start))
+
+
 def reference(quantity, scene, t):
     wave = Wave(scene)
+    operator = Wave(scene, FREE_SURFACE[scene["fluid"]["viscous_term"]]) if wave.nu > 0.0 else wave
     if quantity == "elevation":
         return wave.elevation(t)
     if quantity == "frequency":
-        return wave.exponent().imag
+        bend = (wave.finite_frequency() / wave.frequency - 1.0) * mean_square_share(operator, scene["time"]["end"])
+        return operator.exponent().imag * (1.0 + bend)
     if quantity == "damping":
         return -wave.exponent().real
+    if quantity == "damping_operator":
+        return -operator.exponent().real
     if quantity == "frequency_inviscid":
         return wave.frequency
     if quantity == "frequency_finite":
@@ -131,3 +162,35 @@ def reference(quantity, scene, t):
         t = np.asarray(t, float)
         return 0.25 * wave.rho * wave.g * wave.amplitude**2 * np.exp(2.0 * s.real * t) * np.sin(s.imag * t) ** 2
     raise KeyError(quantity)
+
+
+def measure(quantity, run):
+    if quantity in ("damping", "damping_operator"):
+        return fit(run)[0]
+    if quantity == "frequency":
+        return fit(run)[1]
+    return NotImplemented
+
+
+def figures(runs):
+    """The swing over time with the viscous theory's envelopes, and the damping against the spacing."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.5, 3.8), layout="constrained")
+    swing, damping = figure.subplots(1, 2)
+    good = [run for run in runs if not run.failure]
+    for number, name in enumerate(dict.fromkeys(run.variant for run in good)):
+        own = [run for run in good if run.variant == name]
+        wave = Wave(own[-1].scene)
+        t, v = own[-1].series("swing")
+        swing.plot(t, v / (wave.amplitude * wave.frequency), lw=1.0, color=f"C{number}", label=name)
+        points = sorted((run.scene["fluid"]["spacing"], fit(run)[0] / (wave.nu * wave.k**2)) for run in own)
+        damping.semilogx(*zip(*points), "o-", ms=4, lw=1.0, color=f"C{number}", label=name)
+        damping.axhline(reference("damping_operator", own[-1].scene, 0.0) / (wave.nu * wave.k**2), lw=0.8, ls="--", color=f"C{number}")
+    swing.set_xlabel("time [s]")
+    swing.set_ylabel("mean of 2 u sin kx, over a omega")
+    damping.set_xlabel("spacing [m]")
+    damping.set_ylabel("damping/(nu k^2)")
+    damping.legend(fontsize="x-small")
+    return [("wave", figure, "The swing at the finest spacing (left). Fitted damping (points) and the exact one of the fluid whose surface "
+             "each viscous term makes (dashed): no stress with `monaghan_gingold`, no gradient with `morris`.")]
