@@ -66,13 +66,15 @@ template <class T> double bytes(const T& v) {
 }
 
 double held_bytes(const SphFluid& f) {
-    double sum = bytes(f.rho) + bytes(f.drho) + bytes(f.drho_spread) + bytes(f.id);
-    for (const VectorField* field : {&f.x, &f.v, &f.a, &f.spread, &f.dv_spread, &f.x_listed})
+    double sum = bytes(f.rho) + bytes(f.drho) + bytes(f.drho_spread) + bytes(f.drho_before) + bytes(f.completeness) +
+                 bytes(f.id);
+    for (const VectorField* field : {&f.x, &f.v, &f.a, &f.a_before, &f.spread, &f.dv_spread, &f.x_listed})
         for (const auto& component : *field) sum += bytes(component);
     const FluidClusters& c = f.clusters;
-    for (const auto& part : c.parts) sum += bytes(part);
-    for (const auto& x : c.x) sum += bytes(x);
-    return sum + bytes(c.part_end) + bytes(c.records) + bytes(c.record_of) + bytes(c.image_of) + bytes(c.image_shift);
+    for (const auto& part : c.lists.parts) sum += bytes(part);
+    for (const auto& x : c.grid.x) sum += bytes(x);
+    return sum + bytes(c.grid.begin) + bytes(c.grid.bin_begin) + bytes(c.lists.part_end) + bytes(c.records) +
+           bytes(c.record_of) + bytes(c.image_of) + bytes(c.image_shift);
 }
 
 void advance_repeatedly(benchmark::State& state, int dimensions, int n, double smoothing, bool extras, int threads) {

@@ -269,6 +269,8 @@ void Loader::load_boundary(BoundaryParticles& b, int dimensions) const {
     });
     b.side.assign(side.begin(), side.end());
     b.rule.resize(side.size()); // those of walls come first and follow from the scene
+    b.slip.resize(side.size());
+    for (Field<double>& excess : b.excess) excess.assign(side.size(), 0.0);
     const std::vector<double> ways = doubles("sph/boundary/ways", 2);
     b.fastest = ways[0], b.travelled = ways[1];
 }

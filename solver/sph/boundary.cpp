@@ -18,7 +18,8 @@ constexpr double least_cover = 0.05; // of the fluid around a mirror point, belo
 
 /// Calls visit(field) for every field of vectors.
 template <class Visit> void for_each_vector_field(BoundaryParticles& b, Visit&& visit) {
-    for (VectorField* field : {&b.x, &b.mirror, &b.velocity, &b.mirror_velocity, &b.x_listed, &b.mirror_listed})
+    for (VectorField* field :
+         {&b.x, &b.mirror, &b.velocity, &b.mirror_velocity, &b.x_listed, &b.mirror_listed, &b.excess})
         visit(*field);
 }
 
@@ -49,14 +50,16 @@ FluidRecord record_of(const SphFluid& f, const Vec3& x, const Vec3& u, double p)
     return {x[0], x[1], x[2], p / (rho * rho), u[0], u[1], u[2], f.mass / rho};
 }
 
-FluidRecord wall_record(const SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane) {
-    const BoundaryParticles& b = f.boundary;
-    const Continuation& rule = b.rule[k];
-    const Vec3 x = at(b.x, k, f.dimensions);
-    if (group.covered[lane] <= least_cover) return record_of(f, x, 0.5 * rule.offset, 0.0);
+FluidRecord wall_record(SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane) {
+    BoundaryParticles& b = f.boundary;
+    const Continuation &rule = b.rule[k], &slip = b.slip[k];
+    const Vec3 x = at(b.x, k, f.dimensions), fluid_u = lane_of(group.u, lane);
+    const bool wet = group.covered[lane] > least_cover;
+    const Vec3 u = wet ? Vec3(rule.turn * fluid_u + rule.offset) : Vec3(0.5 * rule.offset);
+    const Vec3 excess = wet ? Vec3(slip.turn * fluid_u + slip.offset - u) : Vec3(Vec3::Zero());
+    for (int c = 0; c < f.dimensions; ++c) b.excess[static_cast<std::size_t>(c)][k] = excess[c];
     const Vec3 away = f.domain.minimum_image(x - at(b.mirror, k, f.dimensions));
-    return record_of(f, x, rule.turn * lane_of(group.u, lane) + rule.offset,
-                     group.p[lane] + f.density * f.body_force.dot(away));
+    return record_of(f, x, u, wet ? group.p[lane] + f.density * f.body_force.dot(away) : 0.0);
 }
 
 /// Moves a mean towards a value; NaN takes the value.
@@ -108,9 +111,11 @@ void append_boundary_particle(BoundaryParticles& b, int dimensions, const Bounda
         b.mirror_velocity[axis].push_back(particle.mirror_velocity[c]);
         b.x_listed[axis].push_back(particle.x[c]);
         b.mirror_listed[axis].push_back(particle.mirror[c]);
+        b.excess[axis].push_back(0.0);
     }
     b.side.push_back(particle.side);
     b.rule.push_back(particle.rule);
+    b.slip.push_back(particle.slip);
     b.mean_speed.push_back(unknown);
     b.mean_pressure.push_back(unknown);
     b.fastest = std::max(b.fastest, particle.velocity.norm());
@@ -126,8 +131,75 @@ void keep_boundary_particles(BoundaryParticles& b, int dimensions, const std::ve
     });
     keep(b.side);
     keep(b.rule);
+    keep(b.slip);
     keep(b.mean_speed);
     keep(b.mean_pressure);
+}
+
+namespace {
+
+/// Which records are boundary particles', and which clusters have any of them near.
+void mark_boundary_records(SphFluid& f) {
+    BoundaryParticles& b = f.boundary;
+    const FluidClusters& clusters = f.clusters;
+    b.of_record.assign(clusters.records.size(), -1);
+    for (std::size_t k = 0; k < b.size(); ++k)
+        b.of_record[static_cast<std::size_t>(clusters.record_of_passive[k])] = static_cast<std::int32_t>(k);
+    for (std::size_t r = 0; r < b.of_record.size(); ++r)
+        b.of_record[r] = b.of_record[static_cast<std::size_t>(clusters.image_of[r])];
+    b.near_clusters.clear();
+    for (std::size_t c = 0; c < clusters.count; ++c) {
+        const auto near = clusters.near(c);
+        if (std::any_of(near.begin(), near.end(),
+                        [&](std::int32_t r) { return b.of_record[static_cast<std::size_t>(r)] >= 0; }))
+            b.near_clusters.push_back(static_cast<std::int32_t>(c));
+    }
+}
+
+/// The correction of one cluster: - sum m excess_b . grad W = sum over dv = - excess_b.
+template <class KernelLaw> void correct_cluster(SphFluid& f, std::size_t cluster) {
+    const BoundaryParticles& b = f.boundary;
+    Pack sum{};
+    std::array<Pack, 3> x{};
+    for (std::size_t lane = 0; lane < pack_width; ++lane) {
+        const FluidRecord& own =
+            f.clusters.records[static_cast<std::size_t>(f.clusters.record_of[pack_width * cluster + lane])];
+        const int l = static_cast<int>(lane);
+        x[0][l] = own.x, x[1][l] = own.y, x[2][l] = own.z;
+    }
+    for (const std::int32_t record : f.clusters.near(cluster)) {
+        const std::int32_t k = b.of_record[static_cast<std::size_t>(record)];
+        if (k < 0) continue;
+        const FluidRecord& other = f.clusters.records[static_cast<std::size_t>(record)];
+        const std::array<double, 3> place{other.x, other.y, other.z};
+        Pack r_sq{}, excess_dx{};
+        for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {
+            const Pack dx = x[c] - broadcast<Pack>(place[c]);
+            r_sq += dx * dx;
+            excess_dx += broadcast<Pack>(b.excess[c][static_cast<std::size_t>(k)]) * dx;
+        }
+        sum -= KernelLaw::f(square_root(r_sq) * broadcast<Pack>(1.0 / f.h)) * excess_dx;
+    }
+    const double factor = f.mass * KernelLaw::sigma(f.dimensions) / std::pow(f.h, f.dimensions + 2);
+    for (std::size_t lane = 0; lane < pack_width; ++lane)
+        f.drho[pack_width * cluster + lane] += factor * sum[static_cast<int>(lane)];
+}
+
+} // namespace
+
+void correct_continuity(SphFluid& f) {
+    const std::vector<std::int32_t>& clusters = f.boundary.near_clusters;
+    std::visit(
+        [&](const auto& kernel) {
+            parallel_chunks(
+                clusters.size(),
+                [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t q = begin; q < end; ++q)
+                        correct_cluster<std::decay_t<decltype(kernel)>>(f, static_cast<std::size_t>(clusters[q]));
+                },
+                16);
+        },
+        f.kernel);
 }
 
 void list_mirrors(SphFluid& f) {
@@ -138,6 +210,7 @@ void list_mirrors(SphFluid& f) {
     std::array<std::vector<double>, 3> place;
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
         for (const std::int32_t k : b.member) place[c].push_back(b.mirror_listed[c][static_cast<std::size_t>(k)]);
+    mark_boundary_records(f);
     list_records(b.near_mirror, f.clusters.grid, place, f.dimensions, f.clusters.reach + f.clusters.skin,
                  f.clusters.passive);
 }

@@ -32,7 +32,9 @@ struct BoundaryParticles {
     VectorField velocity, mirror_velocity; // with which they move [m/s]
     VectorField x_listed, mirror_listed;   // where they were when the lists were built [m]
     std::vector<std::int32_t> side;        // index of the open side, -1 of walls; walls come first
-    std::vector<Continuation> rule;        // of walls
+    std::vector<Continuation> rule;        // of walls: the velocity that friction sees
+    std::vector<Continuation> slip; // of walls: the velocity that the continuity equation sees, as if all slipped
+    VectorField excess;             // the latter less the former, at present [m/s]
     // of open sides: slow means at the mirror point of the velocity along the flow and of the pressure; NaN until known
     Field<double> mean_speed, mean_pressure;
     double fastest = 0.0;   // greatest of the velocities [m/s]
@@ -41,6 +43,8 @@ struct BoundaryParticles {
     // Groups of eight mirror points and the fluid particles near them; renewed with the clusters.
     std::vector<std::int32_t> member; // [lanes] boundary particle of each lane; the last group is filled up
     NeighbourLists near_mirror;
+    std::vector<std::int32_t> of_record;     // [records] boundary particle of each record, -1 for the fluid's
+    std::vector<std::int32_t> near_clusters; // clusters with boundary particles in their neighbourhood
 
     std::size_t size() const { return side.size(); }
 };
@@ -49,7 +53,7 @@ struct BoundaryParticles {
 struct BoundaryParticle {
     Vec3 x, mirror, velocity, mirror_velocity;
     std::int32_t side = -1;
-    Continuation rule;
+    Continuation rule, slip;
 };
 
 void append_boundary_particle(BoundaryParticles& boundary, int dimensions, const BoundaryParticle& particle);
@@ -66,6 +70,12 @@ void list_mirrors(SphFluid& fluid);
 /// the means of open sides). The fluid's records, with images, are up to date; the images of the boundary particles are
 /// not, afterwards.
 void continue_state(SphFluid& fluid, double since);
+
+/// Takes what sticking walls seem to add to the divergence out of the density rates. A wall's friction is that of a
+/// velocity continued antisymmetrically; its component along the wall jumps where walls of different speed meet (the
+/// corners of a driven cavity), which the continuity equation would take for a source. There only the normal component
+/// is turned round (Marrone et al. 2011, Comput. Methods Appl. Mech. Eng. 200, 1526).
+void correct_continuity(SphFluid& fluid);
 
 /// Moves boundary particles and mirror points by `dt` [s].
 void move_boundary(SphFluid& fluid, double dt);

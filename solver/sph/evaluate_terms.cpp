@@ -5,9 +5,13 @@
 namespace plumb {
 
 void evaluate_terms(SphFluid& f) {
-    if (std::holds_alternative<CorrectedOperators>(f.operators)) return evaluate_corrected(f);
-    if (std::holds_alternative<VariableOperators>(f.operators)) return evaluate_variable(f);
-    std::visit([&](const auto& kernel) { evaluate_with<std::decay_t<decltype(kernel)>>(f); }, f.kernel);
+    if (std::holds_alternative<CorrectedOperators>(f.operators))
+        evaluate_corrected(f);
+    else if (std::holds_alternative<VariableOperators>(f.operators))
+        evaluate_variable(f);
+    else
+        std::visit([&](const auto& kernel) { evaluate_with<std::decay_t<decltype(kernel)>>(f); }, f.kernel);
+    correct_continuity(f);
 }
 
 void add_sources(SphFluid& f, double time) {

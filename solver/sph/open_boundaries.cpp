@@ -30,8 +30,13 @@ Vec3 turned(const OpenSide& side, const Vec3& v) { return v - 2.0 * v.dot(side.n
 
 void append(SphFluid& f, std::size_t side, const Vec3& x, const Vec3& velocity) {
     append_boundary_particle(f.boundary, f.dimensions,
-                             {x, f.open_sides[side].reflected(x), velocity, turned(f.open_sides[side], velocity),
-                              static_cast<std::int32_t>(side), Continuation{}});
+                             {x,
+                              f.open_sides[side].reflected(x),
+                              velocity,
+                              turned(f.open_sides[side], velocity),
+                              static_cast<std::int32_t>(side),
+                              {},
+                              {}});
 }
 
 /// Particles of inlet buffers that have come in leave a copy of themselves in the fluid and go back to the far end.

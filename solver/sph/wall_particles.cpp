@@ -75,18 +75,18 @@ Vec3 displacement_velocity(const FluidWall& wall) {
 
 /// Reflections in all walls: the no-slip ones turn the velocity round as often as there are, about their mean velocity;
 /// each free-slip one turns round the component normal to it.
-Continuation continuation(const std::vector<Behind>& behind) {
+Continuation continuation(const std::vector<Behind>& behind, bool all_slip) {
     Continuation rule;
     Vec3 mean = Vec3::Zero();
     int sticking = 0;
     for (const Behind& b : behind)
-        if (!b.wall->slips) mean += b.wall->body.velocity, ++sticking;
+        if (!(all_slip || b.wall->slips)) mean += b.wall->body.velocity, ++sticking;
     if (sticking % 2 == 1) {
         rule.turn = -Eigen::Matrix3d::Identity();
         rule.offset = 2.0 * mean / sticking;
     }
     for (const Behind& b : behind) {
-        if (!b.wall->slips) continue;
+        if (!(all_slip || b.wall->slips)) continue;
         const Eigen::Matrix3d turn = Eigen::Matrix3d::Identity() - 2.0 * b.normal * b.normal.transpose();
         rule.offset = turn * rule.offset + 2.0 * b.normal.dot(b.wall->body.velocity) * b.normal;
         rule.turn = turn * rule.turn;
@@ -102,7 +102,7 @@ BoundaryParticle wall_particle(const SphFluid& f, const Vec3& x, const std::vect
     }
     for (const OpenSide& side : f.open_sides) // beside a buffer there is no fluid: that in front of the plane will do
         if (side.distance(mirror) < 0.0) mirror = side.reflected(mirror);
-    return {x, mirror, velocity, velocity, -1, continuation(behind)};
+    return {x, mirror, velocity, velocity, -1, continuation(behind, false), continuation(behind, true)};
 }
 
 } // namespace

@@ -144,6 +144,7 @@ TEST(SphWalls, InterpolationIsExactForLinearFields) {
                                   Vec3::Zero(),
                                   Vec3::Zero(),
                                   -1,
+                                  {},
                                   {}});
         append_boundary_particle(f.boundary, d,
                                  {Vec3(0.6, 0.6, d == 3 ? -0.15 : 0.0),
@@ -151,6 +152,7 @@ TEST(SphWalls, InterpolationIsExactForLinearFields) {
                                   Vec3::Zero(),
                                   Vec3::Zero(),
                                   -1,
+                                  {},
                                   {}}); // in 3-D at the edge of the fluid
         start(f);
         for (std::size_t k = 0; k < 2; ++k) {
@@ -187,6 +189,21 @@ TEST(SphWalls, SlipAndNoSlip) {
         slowed = std::min(slowed, sticks.fluid().a[0][k]);
     }
     EXPECT_LT(slowed, -0.1);
+}
+
+// A moving lid beside a wall at rest that looks like a source: the fluid at rest in the corner stays at its density.
+TEST(SphWalls, LidCornersAreNoSources) {
+    const std::string sides = "[[wall]]\nname = \"left\"\nshape = \"plane\"\npoint = [0.0, 0.0]\nnormal = [1.0, 0.0]\n"
+                              "slip = \"no_slip\"\n[[wall]]\nname = \"right\"\nshape = \"plane\"\npoint = [1.0, 0.0]\n"
+                              "normal = [-1.0, 0.0]\nslip = \"no_slip\"\n";
+    Bench bench(scene_text(channel("no_slip", "[2.0, 0.0]") + sides, "", "[false, false]"));
+    const SphFluid& f = bench.fluid();
+    double dragged = 0.0;
+    for (std::size_t k = 0; k < f.slots(); ++k) {
+        EXPECT_LT(std::abs(f.drho[k]), 1e-9);
+        dragged = std::max(dragged, f.a[0][k]);
+    }
+    EXPECT_GT(dragged, 1.0); // the lid's friction is still there
 }
 
 // Pressure at a wall that is not continued against the weight: the column's lowest layer would fall.
