@@ -128,11 +128,47 @@ def measure(quantity, run):
     return NotImplemented
 
 
+def root_mean_square_error(run, k=-1):
+    """Of u and v over U at the nodes against the recomputed profiles, in the k-th snapshot."""
+    exact = [reference(quantity, run.scene, None) for quantity in ("u_vertical", "v_horizontal")]
+    return float(np.sqrt(np.mean((nodes_of(run, k) - np.array(exact)) ** 2)))
+
+
+def table(runs):
+    """Accuracy, steadiness and cost of every run."""
+    rows = []
+    for run in runs:
+        if run.failure is None:
+            drift, side = measure("drift", run), 1.0 / run.scene["fluid"]["spacing"]
+            rows.append([run.variant, f"{side:.0f}", f"{root_mean_square_error(run):.4f}", f"{drift:.4f}", f"{run.info['cpu_s']:.1f}"])
+    columns = ["variant", "particles to a side", "error (rms, of U)", "drift (of U)", "CPU (s)"]
+    return {"columns": columns, "rows": rows, "caption": "Error on both centre lines at the end; drift is the greatest change in the last tenth."}
+
+
+def work_precision(runs):
+    """Error against CPU time at Re 100: the sweep as a line, option sets as points."""
+    import matplotlib.pyplot as plt
+
+    figure, axis = plt.subplots(figsize=(5.2, 3.6))
+    usable = [run for run in runs if run.failure is None and reynolds(run.scene) == 100]
+    points = {run: (run.info["cpu_s"], np.mean([root_mean_square_error(run, k) for k in (-1, -2, -3)])) for run in usable}
+    standard = sorted(point for run, point in points.items() if run.variant.startswith("re_100"))
+    axis.loglog(*zip(*standard), "k.-", lw=0.8, label="standard options")
+    for run, point in points.items():
+        if not run.variant.startswith("re_100"):
+            axis.loglog(*point, "o", ms=5, label=run.variant)
+    axis.set(xlabel="CPU time (s)", ylabel="error (rms, of U)")
+    axis.legend(fontsize=7)
+    figure.tight_layout()
+    return "work_precision", figure, "Re 100: error on the centre lines, mean over the last three outputs, against CPU time."
+
+
 def figures(runs):
     """Both centre lines of the finest run of every Reynolds number, with the recomputed profile and Ghia's tables."""
     import matplotlib.pyplot as plt
 
-    finest = {reynolds(run.scene): run for run in sorted(runs, key=lambda run: -run.scene["fluid"]["spacing"]) if run.failure is None}
+    swept = [run for run in runs if run.variant.startswith("re_")]
+    finest = {reynolds(run.scene): run for run in sorted(swept, key=lambda run: -run.scene["fluid"]["spacing"]) if run.failure is None}
     figure, axes = plt.subplots(2, len(finest), figsize=(3.2 * len(finest), 5.6), squeeze=False)
     s, fine = np.linspace(0.0, 1.0, NODES), np.linspace(0.0, 1.0, 201)
     for column, (re, run) in enumerate(sorted(finest.items())):
@@ -144,4 +180,4 @@ def figures(runs):
             axis.set(xlabel="$y/L$" if component == "u" else "$x/L$", title=f"Re {re}: ${component}/U$")
             axis.legend(fontsize=6)
     figure.tight_layout()
-    return [("centre_lines", figure, "u on the vertical and v on the horizontal centre line, finest run of each Reynolds number.")]
+    return [work_precision(runs), ("centre_lines", figure, "u on the vertical and v on the horizontal centre line, finest run of each Reynolds number.")]
