@@ -42,6 +42,15 @@ struct RestField {
     FlowState operator()(const Vec3& /*x*/, const FluidNumbers& /*f*/) const { return {}; }
 };
 
+/// u = 0 and one pressure everywhere: below zero the fluid is under tension.
+struct UniformPressureField {
+    static constexpr std::string_view name = "uniform_pressure";
+    static constexpr LawInfo info{"u = 0, p = pressure", "any", "definition"};
+    double pressure; // [Pa]
+    explicit UniformPressureField(Table& table) : pressure(table.number("pressure")) {}
+    FlowState operator()(const Vec3& /*x*/, const FluidNumbers& /*f*/) const { return {Vec3::Zero(), pressure}; }
+};
+
 /// The plane vortex u = -U cos kx sin ky, v = U sin kx cos ky, p = -rho U^2/4 (cos 2kx + cos 2ky), k = 2 pi/size.
 struct TaylorGreenField {
     static constexpr std::string_view name = "taylor_green";
@@ -118,7 +127,7 @@ struct HydrostaticField {
     }
 };
 
-using InitialField =
-    std::variant<RestField, TaylorGreenField, TaylorGreenCube, ShearWaveField, SoundWaveField, HydrostaticField>;
+using InitialField = std::variant<RestField, UniformPressureField, TaylorGreenField, TaylorGreenCube, ShearWaveField,
+                                  SoundWaveField, HydrostaticField>;
 
 } // namespace plumb

@@ -293,6 +293,11 @@ TEST(SphScene, InitialFieldsByFormula) {
         EXPECT_NEAR(f.v[1][k], 0.3 * std::sin(a) * std::cos(b), 1e-13);
         EXPECT_NEAR(pressure(f, f.rho[k]), -0.25 * 1000.0 * 0.09 * (std::cos(2.0 * a) + std::cos(2.0 * b)), 1e-8);
     }
+    Bench tension(scene_text(2, {{"initial", "{law = \"uniform_pressure\", pressure = -500.0}"}}));
+    for (std::size_t k = 0; k < tension.fluid().slots(); ++k) {
+        EXPECT_EQ(tension.fluid().v[0][k], 0.0);
+        EXPECT_NEAR(pressure(tension.fluid(), tension.fluid().rho[k]), -500.0, 1e-8);
+    }
     const SphFluid& f = sound.fluid();
     for (std::size_t k = 0; k < f.slots(); ++k) {
         const double u = 0.3 * std::cos(2.0 * pi * f.x[0][k]);

@@ -74,3 +74,15 @@ def reference(quantity, scene, t):
     if quantity == "energy_share":  # of the energy at the start
         return vortex.kinetic_energy(t) / (vortex.speed**2 / 8.0)
     raise KeyError(quantity)
+
+
+def slope(t, values):
+    """(t, d values/dt) by central differences of the inner points; the ends are left out."""
+    return t[1:-1], (values[2:] - values[:-2]) / (t[2:] - t[:-2])
+
+
+def measure(quantity, run):
+    if quantity != "dissipation":
+        return NotImplemented
+    t, rate = slope(*(np.ravel(part) for part in run.series("kinetic_energy")))
+    return t, -rate
