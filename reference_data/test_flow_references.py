@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parent
 sys.path.insert(0, str(ROOT))
 
 import tables  # noqa: E402
-from theory import cylinder_arrays, tait  # noqa: E402
+from theory import channel_rows, cylinder_arrays, local_fit, tait  # noqa: E402
 from verification_case import case  # noqa: E402
 
 
@@ -71,7 +71,8 @@ def test_channel_limits_and_the_numbers_of_morris():
 
 
 def test_channel_of_a_scene():
-    scene = {"domain": {"size": [1e-3, 1e-3], "gravity": [1e-4, 0.0]}, "fluid": {"density": 1000.0, "viscosity": 1e-3},
+    scene = {"domain": {"size": [1e-3, 1e-3], "gravity": [0.0, 0.0]},
+             "fluid": {"density": 1000.0, "viscosity": 1e-3, "body_force": [1e-4, 0.0]},
              "wall": [{"velocity": [0.0, 0.0, 0.0]}, {}]}
     reference = case("channel_start")
     profile = reference.reference("velocity_profile", scene, np.array([0.0, 50.0]))
@@ -225,9 +226,11 @@ def test_cavity_reads_scene_and_particles():
 # --- cylinder_array ---
 
 
-def array_scene(sides, radius, count, gravity=(1e-3, 0.0)):
-    walls = [{"shape": "cylinder", "radius": radius}] * count
-    return {"domain": {"size": list(sides), "gravity": list(gravity)}, "fluid": {"density": 1000.0, "viscosity": 1e-3}, "wall": walls}
+def array_scene(sides, radius, places, force=(1e-3, 0.0)):
+    """Cylinders at `places` in sides of the box."""
+    walls = [{"shape": "cylinder", "radius": radius, "point": [a * side for a, side in zip(place, sides)]} for place in places]
+    fluid = {"density": 1000.0, "viscosity": 1e-3, "body_force": list(force)}
+    return {"domain": {"size": list(sides), "gravity": [0.0, 0.0]}, "fluid": fluid, "wall": walls}
 
 
 def test_dilute_arrays_and_interpolation_free_tables():
@@ -246,14 +249,14 @@ def test_dilute_arrays_and_interpolation_free_tables():
 def test_cylinder_cells_and_the_measured_permeability():
     reference = case("cylinder_array")
     radius = math.sqrt(0.2 / math.pi) * 1e-3
-    square = array_scene((1e-3, 1e-3), radius, 1)
-    hexagonal = array_scene(reference.hexagonal_box(radius, 0.2), radius, 2, (0.0, -1e-3))
+    square = array_scene((1e-3, 1e-3), radius, [(0.5, 0.5)])
+    hexagonal = array_scene(reference.hexagonal_box(radius, 0.2), radius, [(0.5, 0.25), (0.0, 0.75), (1.0, 0.75)], (0.0, -1e-3))
     for scene, expected in ((square, 0.304849), (hexagonal, 0.30711)):
         assert reference.cell(scene).solid_fraction == pytest.approx(0.2)
         k = reference.reference("permeability", scene, None)
         assert k == pytest.approx(expected, rel=1e-5)
         mean = reference.reference("mean_fluid_velocity", scene, None)
-        v = np.tile(np.array(scene["domain"]["gravity"]) / 1e-3 * mean, (7, 1))
+        v = np.tile(np.array(scene["fluid"]["body_force"]) / 1e-3 * mean, (7, 1))
         assert reference.measured_permeability(scene, v) == pytest.approx(k)
         # the force on the cylinder is (1 - c) F of the table, mu U F*
         u = reference.reference("superficial_velocity", scene, None)
@@ -279,3 +282,40 @@ def test_rotating_patch_by_potential_flow():
     assert np.abs(z[-1]) / start == pytest.approx(math.sqrt(1.25), rel=5e-4)
     around = np.concatenate([1j**n * z for n in range(4)])
     assert 0.5 * np.sum((np.conj(around) * np.roll(around, -1)).imag) == pytest.approx(1.0, abs=1e-4)
+
+
+def test_a_wrong_radius_is_measured_against_the_nominal_one():
+    reference = case("cylinder_array")
+    radius = math.sqrt(0.3 / math.pi)
+    right, wrong = (array_scene((1.0, 1.0), r, [(0.5, 0.5)]) for r in (radius, 1.02 * radius))
+    for quantity in ("permeability", "superficial_velocity"):
+        assert reference.reference(quantity, wrong, None) == pytest.approx(reference.reference(quantity, right, None), rel=1e-12)
+    along, across = reference.permeabilities(right, np.array([[0.0, 2.0]]))
+    assert along[0] == 0.0 and across[0] > 0.0
+
+
+# --- what the cases measure with ---
+
+
+def test_local_fit_is_exact_for_parabolas_beside_a_wall_too():
+    rng = np.random.default_rng(3)
+    x = (np.stack(np.meshgrid(np.arange(12), np.arange(12)), axis=-1).reshape(-1, 2) + rng.uniform(0.3, 0.7, (144, 2))) / 12.0
+
+    def field(at):
+        return np.stack((1.0 + 2.0 * at[:, 0] - at[:, 1] ** 2, at[:, 0] * at[:, 1]), axis=1)
+
+    places = np.array([[0.5, 0.5], [0.5, 0.0], [0.4, 1.0]])
+    np.testing.assert_allclose(local_fit.fitted(x, field(x), places, 0.25), field(places), atol=1e-12)
+    with pytest.raises(ValueError, match="do not fix"):
+        local_fit.fitted(x, field(x), places, 0.05)
+
+
+def test_rows_in_a_channel_tend_to_the_parabola_with_second_order():
+    errors = []
+    for rows in (10, 20, 40):
+        y, u = channel_rows.steady_rows(rows, 2.5)
+        np.testing.assert_allclose(u, u[::-1], rtol=1e-9)
+        errors.append(np.max(np.abs(u - 4.0 * y * (1.0 - y))))
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.02) and errors[1] / errors[2] == pytest.approx(4.0, rel=0.02)
+    # a wall that continues the parabola exactly odd slips by (F/nu) <r^2>/8, <r^2> = 5 h^2/9: the same size, 8 x 0.0694 (h/L)^2
+    assert 0.5 < errors[-1] / (8.0 * 5.0 / 72.0 * (2.5 / 40.0) ** 2) < 2.0

@@ -11,13 +11,16 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
 import tables  # noqa: E402
+from theory.local_fit import fitted  # noqa: E402
 
-UNITS = {name: "1" for name in ("u_vertical", "v_horizontal", "u_ghia", "v_ghia", "u_min", "v_max", "v_min")}
+EXTREMES = ("u_min", "v_max", "v_min")
+UNITS = {name: "1" for name in ("u_vertical", "v_horizontal", "u_ghia", "v_ghia", "drift", *EXTREMES)}
 AXES = {"u_vertical": "node", "v_horizontal": "node", "u_ghia": "row", "v_ghia": "row"}
 
 FILES = {"u": ("u_on_vertical_line.csv", "y"), "v": ("v_on_horizontal_line.csv", "x")}
 # (component, Re, place): not comparable. The first is known; the second stands out by 1.1e-3 against neighbours right to 1e-4.
 MISPRINTS = {("v", 400, 0.9063), ("u", 100, 0.0703)}
+FIT_RADIUS = 3.0  # spacings; some 28 particles inside, 14 beside a wall, for the six coefficients of a parabola
 NODES = 33  # places of u_vertical and v_horizontal: j/32, walls included
 
 # Botella & Peyret (1998), Computers & Fluids 27, 421, spectral, lid +x; values as quoted by several public codes: (value, place).
@@ -88,6 +91,109 @@ def reference(quantity, scene, t):
         return profile(quantity[0], re)(np.linspace(0.0, 1.0, NODES))
     if quantity in ("u_ghia", "v_ghia"):
         return ghia(quantity[0], re)[1]
-    if quantity in ("u_min", "v_max", "v_min"):
+    if quantity in EXTREMES:
         return extreme(quantity, re)[0]
+    if quantity == "drift":
+        return 0.0
     raise KeyError(quantity)
+
+
+def at_places(scene, fluid, component, s):
+    """u (v) over U at the places s [n] over L of the vertical (horizontal) centre line, by local_fit from the particles."""
+    length, spacing = scene["domain"]["size"][0], scene["fluid"]["spacing"]
+    middle = np.full(len(s), 0.5)
+    places = np.stack((middle, s) if component == "u" else (s, middle), axis=1) * length
+    column = "uv".index(component)
+    return fitted(fluid["x"], np.asarray(fluid["v"])[:, column], places, FIT_RADIUS * spacing) / lid_speed(scene)
+
+
+def last_third(run):
+    """Numbers of the snapshots, from the end, that are judged."""
+    return range(-(len(run.snapshot_files()) // 3), 0)
+
+
+def mean_at_places(run, component, s):
+    """at_places averaged over the last third of the run's outputs: the corner's noise never dies (README)."""
+    return np.mean([at_places(run.scene, run.snapshot(k)["fluid"], component, s) for k in last_third(run)], axis=0)
+
+
+def nodes_of(run, k):
+    """[2, NODES]: u and v over U at the nodes of their centre lines in the k-th snapshot."""
+    s, fluid = np.linspace(0.0, 1.0, NODES), run.snapshot(k)["fluid"]
+    return np.array([at_places(run.scene, fluid, component, s) for component in "uv"])
+
+
+def drift(run):
+    """Greatest change of a node's value, over U, in any tenth of the run that ends in its last third."""
+    tenth = len(run.snapshot_files()) // 10
+    return max(float(np.max(np.abs(nodes_of(run, k) - nodes_of(run, k - tenth)))) for k in last_third(run))
+
+
+def measure(quantity, run):
+    if quantity == "drift":
+        return drift(run)
+    if quantity in ("u_vertical", "v_horizontal"):
+        return np.arange(NODES), mean_at_places(run, quantity[0], np.linspace(0.0, 1.0, NODES))
+    if quantity in ("u_ghia", "v_ghia"):
+        s = ghia(quantity[0], reynolds(run.scene))[0]
+        return np.arange(len(s)), mean_at_places(run, quantity[0], s)
+    if quantity in EXTREMES:
+        values = mean_at_places(run, quantity[0], np.linspace(0.02, 0.98, 193))  # parabolas between these are good to 1e-5
+        return float(np.min(values) if quantity.endswith("min") else np.max(values))
+    return NotImplemented
+
+
+def root_mean_square_error(run):
+    """Of u and v over U at the nodes against the recomputed profiles."""
+    nodes = np.linspace(0.0, 1.0, NODES)
+    errors = [mean_at_places(run, c, nodes) - profile(c, reynolds(run.scene))(nodes) for c in "uv"]
+    return float(np.sqrt(np.mean(np.square(errors))))
+
+
+def table(runs):
+    """Accuracy, steadiness and cost of every run."""
+    rows = []
+    for run in runs:
+        if run.failure is None:
+            side = 1.0 / run.scene["fluid"]["spacing"]
+            rows.append([run.variant, f"{side:.0f}", f"{root_mean_square_error(run):.4f}", f"{drift(run):.4f}", f"{run.info['cpu_s']:.1f}"])
+    columns = ["variant", "particles to a side", "error (rms, of U)", "drift (of U)", "CPU (s)"]
+    return {"columns": columns, "rows": rows, "caption": "Error of the mean over the last third of the run on both centre lines; drift is the greatest change in a tenth of the run there."}
+
+
+def work_precision(runs):
+    """Error against CPU time at Re 100: the sweep as a line, option sets as points."""
+    import matplotlib.pyplot as plt
+
+    figure, axis = plt.subplots(figsize=(5.2, 3.6))
+    usable = [run for run in runs if run.failure is None and reynolds(run.scene) == 100]
+    points = {run: (run.info["cpu_s"], root_mean_square_error(run)) for run in usable}
+    standard = sorted(point for run, point in points.items() if run.variant.startswith("re_100"))
+    axis.loglog(*zip(*standard), "k.-", lw=0.8, label="standard options")
+    for run, point in points.items():
+        if not run.variant.startswith("re_100"):
+            axis.loglog(*point, "o", ms=5, label=run.variant)
+    axis.set(xlabel="CPU time (s)", ylabel="error (rms, of U)")
+    axis.legend(fontsize=7)
+    figure.tight_layout()
+    return "work_precision", figure, "Re 100: error on the centre lines, mean over the last third of the run, against CPU time."
+
+
+def figures(runs):
+    """Both centre lines of the finest run of every Reynolds number, with the recomputed profile and Ghia's tables."""
+    import matplotlib.pyplot as plt
+
+    swept = [run for run in runs if run.variant.startswith("re_")]
+    finest = {reynolds(run.scene): run for run in sorted(swept, key=lambda run: -run.scene["fluid"]["spacing"]) if run.failure is None}
+    figure, axes = plt.subplots(2, len(finest), figsize=(3.2 * len(finest), 5.6), squeeze=False)
+    s, fine = np.linspace(0.0, 1.0, NODES), np.linspace(0.0, 1.0, 201)
+    for column, (re, run) in enumerate(sorted(finest.items())):
+        for row, component in enumerate("uv"):
+            axis, places = axes[row][column], ghia(component, re)
+            axis.plot(fine, profile(component, re)(fine), "k-", lw=0.8, label="recomputed")
+            axis.plot(*places, "o", mfc="none", ms=4, color="C1", label="Ghia et al.")
+            axis.plot(s, mean_at_places(run, component, s), ".", ms=4, color="C0", label=f"{1.0 / run.scene['fluid']['spacing']:.0f} to a side")
+            axis.set(xlabel="$y/L$" if component == "u" else "$x/L$", title=f"Re {re}: ${component}/U$")
+            axis.legend(fontsize=6)
+    figure.tight_layout()
+    return [work_precision(runs), ("centre_lines", figure, "u on the vertical and v on the horizontal centre line, finest run of each Reynolds number.")]

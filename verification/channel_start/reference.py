@@ -1,8 +1,17 @@
 """Start-up of plane Couette and plane Poiseuille flow between walls at y = 0 and y = L (README.md)."""
 
 import math
+import sys
+from pathlib import Path
 
 import numpy as np
+from scipy.interpolate import CubicSpline
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
+
+from theory.channel_rows import steady_rows  # noqa: E402
+from theory.local_fit import fitted  # noqa: E402
 
 UNITS = {
     "velocity_profile": "m/s",
@@ -10,7 +19,10 @@ UNITS = {
     "mean_velocity": "m/s",
     "wall_stress": "Pa",
     "velocity_l2": "1",
+    "velocity_linf": "1",
+    "from_rows": "1",
 }
+FIT_RADIUS = 3.0  # spacings; some 28 particles for the six coefficients of a parabola
 PROFILE = 9  # places of "velocity_profile": y = L j/(PROFILE + 1), j = 1 ... PROFILE
 
 # Numbers of Morris, Fox & Zhu (1997), J. Comput. Phys. 136, 214, section 4 (from memory; they fit together, see the test).
@@ -69,11 +81,11 @@ class Channel:
 
 
 def channel(scene):
-    """Channel of a scene: L = size[1], F = gravity[0], the wall speed that of the wall that moves along x, if any."""
+    """Channel of a scene: L = size[1], F = body_force[0], the wall speed that of the wall that moves along x, if any."""
     fluid, domain = scene["fluid"], scene["domain"]
     speeds = [wall.get("velocity", [0.0])[0] for wall in scene.get("wall", [])]
     moving = max(speeds, key=abs, default=0.0)
-    return Channel(domain["size"][1], fluid["viscosity"] / fluid["density"], moving, domain["gravity"][0], fluid["density"])
+    return Channel(domain["size"][1], fluid["viscosity"] / fluid["density"], moving, fluid.get("body_force", [0.0])[0], fluid["density"])
 
 
 def greatest(flow):
@@ -99,6 +111,70 @@ def reference(quantity, scene, t):
         return np.array([flow.mean(time) for time in times])
     if quantity == "wall_stress":
         return np.array([flow.lower_wall_stress(time) for time in times])
-    if quantity == "velocity_l2":
-        return 0.0
+    if quantity in ("velocity_l2", "velocity_linf", "from_rows"):
+        return 0.0  # norms of errors; judged by absolute metrics
     raise KeyError(quantity)
+
+
+def snapshots(run):
+    """The snapshots of a run but the first, the start from rest."""
+    return [run.snapshot(k) for k in range(1, len(run.snapshot_files()))]
+
+
+def profile(scene, fluid):
+    """u [PROFILE], m/s, at the places of velocity_profile from the particles: parabolas fitted in the middle of the channel's length."""
+    size, spacing = scene["domain"]["size"], scene["fluid"]["spacing"]
+    y = size[1] * np.arange(1, PROFILE + 1) / (PROFILE + 1)
+    places = np.stack((np.full(PROFILE, 0.5 * size[0]), y), axis=1)
+    return fitted(fluid["x"], np.asarray(fluid["v"])[:, 0], places, FIT_RADIUS * spacing)
+
+
+def error_norm(scene, snapshot, norm):
+    """velocity_l2 or velocity_linf where the particles are."""
+    x, v, flow = snapshot["fluid"]["x"], snapshot["fluid"]["v"], channel(scene)
+    return profile_error(flow, x[:, 1], v[:, 0], snapshot["time"])[("l1", "l2", "linf").index(norm.removeprefix("velocity_"))]
+
+
+def distance_from_rows(scene, snapshot):
+    """Greatest difference of the particles' u from what the steady rows of theory/channel_rows.py predict, over the peak.
+
+    What is left of the start is added from the series.
+    """
+    flow, x = channel(scene), snapshot["fluid"]["x"][:, 1]
+    y, u = steady_rows(round(flow.width / scene["fluid"]["spacing"]), scene["fluid"]["smoothing"])
+    unsteady = (flow.velocity(x, snapshot["time"]) - flow.steady(x)) / greatest(flow)
+    return float(np.max(np.abs(snapshot["fluid"]["v"][:, 0] / greatest(flow) - CubicSpline(y, u)(x / flow.width) - unsteady)))
+
+
+def measure(quantity, run):
+    if quantity == "from_rows":
+        return distance_from_rows(run.scene, run.snapshot(-1))
+    if quantity not in ("velocity_profile", "velocity_l2", "velocity_linf"):
+        return NotImplemented
+    shots = snapshots(run)
+    t = np.array([shot["time"] for shot in shots])
+    if quantity == "velocity_profile":
+        return t, np.array([profile(run.scene, shot["fluid"]) for shot in shots])
+    return t, np.array([error_norm(run.scene, shot, quantity) for shot in shots])
+
+
+def figures(runs):
+    """Profiles at four times of the finest run of every variant, with the series."""
+    import matplotlib.pyplot as plt
+
+    finest = {run.variant: run for run in runs if run.failure is None}
+    figure, axes = plt.subplots(1, len(finest), figsize=(2.6 * len(finest), 3.0), sharey=True, squeeze=False)
+    for axis, (name, run) in zip(axes[0], finest.items()):
+        flow, shots = channel(run.scene), snapshots(run)
+        y = np.linspace(0.0, flow.width, 201)
+        for colour, k in enumerate(sorted({0, 1, 3, len(shots) - 1})):
+            t = shots[k]["time"]
+            axis.plot(flow.velocity(y, t) / greatest(flow), y / flow.width, color=f"C{colour}", lw=1, label=f"{flow.nu * t / flow.width**2:.3g}")
+            x, v = shots[k]["fluid"]["x"], shots[k]["fluid"]["v"]
+            axis.plot(v[:, 0] / greatest(flow), x[:, 1] / flow.width, ".", ms=1.5, color=f"C{colour}", alpha=0.5)
+        axis.set_title(name, fontsize=9)
+        axis.set_xlabel("$u$ / greatest steady speed")
+    axes[0][0].set_ylabel("$y/L$")
+    axes[0][0].legend(title=r"$\nu t/L^2$", fontsize=7, title_fontsize=7)
+    figure.tight_layout()
+    return [("profiles", figure, "Every particle of the finest run (dots) and the series (lines).")]
