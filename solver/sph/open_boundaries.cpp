@@ -51,6 +51,32 @@ void let_in(SphFluid& f) {
     }
 }
 
+/// The particle nearest to x in the buffer of a side, of those before `end`; `end` if the buffer is empty.
+std::size_t nearest_in_buffer(const SphFluid& f, std::size_t side, const Vec3& x, std::size_t end) {
+    std::size_t nearest = end;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < end; ++k) {
+        if (f.boundary.side[k] != static_cast<std::int32_t>(side)) continue;
+        const double distance = f.domain.minimum_image(at(f.boundary.x, k, f.dimensions) - x).squaredNorm();
+        if (distance < least) {
+            least = distance;
+            nearest = k;
+        }
+    }
+    return nearest;
+}
+
+/// A newcomer to a buffer takes over the means of its nearest neighbour there. If it started them anew from the state
+/// it brings, a wave that passes would be taken for the mean and be sent back.
+void inherit_means(SphFluid& f, std::size_t side) {
+    BoundaryParticles& b = f.boundary;
+    const std::size_t newcomer = b.size() - 1;
+    const std::size_t k = nearest_in_buffer(f, side, at(b.x, newcomer, f.dimensions), newcomer);
+    if (k == newcomer) return;
+    b.mean_speed[newcomer] = b.mean_speed[k];
+    b.mean_pressure[newcomer] = b.mean_pressure[k];
+}
+
 /// Fluid behind an outlet becomes part of its buffer.
 void let_out(SphFluid& f) {
     for (std::size_t s = 0; s < f.open_sides.size(); ++s) {
@@ -62,6 +88,7 @@ void let_out(SphFluid& f) {
         std::sort(leaving.begin(), leaving.end());
         for (const auto& [id, k] : leaving) {
             append(f, s, at(f.x, k, f.dimensions), at(f.v, k, f.dimensions));
+            inherit_means(f, s);
             f.id[k] = -1; // vanishes with the next order of the slots
             --f.particles;
         }
