@@ -18,7 +18,14 @@ def preset_overrides(entry, folder):
     if not isinstance(fluid, dict):
         raise entry.error("preset", "needs a scene with a [fluid] table")
     owned = {key for preset in presets.values() for key in preset}
-    return {"fluid": {key: value for key, value in fluid.items() if key not in owned} | presets[name]}
+    kept = {key: value for key, value in fluid.items() if key not in owned}
+    return {"fluid": without_idle_scale(kept | presets[name])}
+
+
+def without_idle_scale(fluid):
+    """`fluid` less its reference_velocity where neither shifting nor an automatic sound speed uses it: an idle key is an error."""
+    used = "shifting" in fluid or fluid.get("sound_speed") == "auto"
+    return {key: value for key, value in fluid.items() if used or key != "reference_velocity"}
 
 
 def read_presets(file):

@@ -54,14 +54,14 @@ PRESETS = '[rough]\nkernel = "c2"\n[smooth]\nkernel = "c4"\nshifting = 4.0\n'
 def with_preset(case, name):
     """The case with presets beside it and a variant that names one."""
     (case.folder.parent / "presets.toml").write_text(PRESETS)
-    case.append("scene.toml", '\n[fluid]\nspacing = 0.1\nkernel = "c6"\nshifting = 1.0\n')
+    case.append("scene.toml", '\n[fluid]\nspacing = 0.1\nkernel = "c6"\nshifting = 1.0\nreference_velocity = 1.0\n')
     case.append("case.toml", f'[[variant]]\nname = "v"\npreset = "{name}"\nset = {{"fluid.density" = 2.0}}\n')
 
 
 def test_a_preset_replaces_every_key_that_presets_have(case):
     with_preset(case, "rough")
     overrides = read_case(case.folder).variant("v").overrides
-    assert overrides == {"fluid": {"spacing": 0.1, "kernel": "c2"}, "fluid.density": 2.0}  # no shifting left
+    assert overrides == {"fluid": {"spacing": 0.1, "kernel": "c2"}, "fluid.density": 2.0}  # no shifting, nor its scale
     assert list(overrides) == ["fluid", "fluid.density"]  # --set in this order
 
 
