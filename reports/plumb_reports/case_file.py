@@ -5,6 +5,7 @@ from pathlib import Path
 
 from .bisection_file import WorkPrecision, read_bisections, read_work_precision
 from .metrics import METRICS
+from .presets import preset_overrides
 from .strict import CaseError, is_number, toml_table
 
 TIERS = ("quick", "full", "campaign")
@@ -138,7 +139,7 @@ def read_case(folder):
     summary, source, area = table.text("summary"), table.text("source"), table.name("area")
     reference = table.text("reference", choices=REFERENCES)
     sweep = read_sweep(table.table("sweep", "[sweep]"))
-    variants = read_variants(table, sweep)
+    variants = read_variants(table, sweep, folder)
     checks = read_checks(table, reference, variants, sweep)
     bisections = read_bisections(table, variants, sweep)
     case = Case(folder.name, folder, summary, source, reference, area, variants, sweep, checks,
@@ -162,14 +163,14 @@ def read_sweep(table):
     return Sweep(parameter, values, quick, campaign)
 
 
-def read_variants(table, sweep):
+def read_variants(table, sweep, folder):
     """The variants; a single one called "default" when the case names none."""
     variants = []
     for entry in table.tables("variant"):
         name = entry.name("name")
         entry.where = f"[[variant]] '{name}'"
         most = len(sweep.values) if sweep else 0
-        variant = Variant(name, entry.dictionary("set", {}), entry.flag("sweep", True),
+        variant = Variant(name, {**preset_overrides(entry, folder), **entry.dictionary("set", {})}, entry.flag("sweep", True),
                           entry.integer("values", None, lowest=1, highest=most))
         entry.finish()
         if variant.values and not variant.swept:

@@ -48,6 +48,32 @@ def test_a_variant_that_only_another_tier_judges_is_not_run(case):
     assert {p.variant for p in tier_plans(read, "full", Path("out"))} == {"default", "late", "shown"}
 
 
+PRESETS = '[rough]\nkernel = "c2"\n[smooth]\nkernel = "c4"\nshifting = 4.0\n'
+
+
+def with_preset(case, name):
+    """The case with presets beside it and a variant that names one."""
+    (case.folder.parent / "presets.toml").write_text(PRESETS)
+    case.append("scene.toml", '\n[fluid]\nspacing = 0.1\nkernel = "c6"\nshifting = 1.0\nreference_velocity = 1.0\n')
+    case.append("case.toml", f'[[variant]]\nname = "v"\npreset = "{name}"\nset = {{"fluid.density" = 2.0}}\n')
+
+
+def test_a_preset_replaces_every_key_that_presets_have(case):
+    with_preset(case, "rough")
+    overrides = read_case(case.folder).variant("v").overrides
+    assert overrides == {"fluid": {"spacing": 0.1, "kernel": "c2"}, "fluid.density": 2.0}  # no shifting, nor its scale
+    assert list(overrides) == ["fluid", "fluid.density"]  # --set in this order
+
+
+def test_unknown_presets_are_refused(case):
+    with_preset(case, "rouhg")
+    with pytest.raises(CaseError, match="'preset' is 'rouhg'; known are rough, smooth"):
+        read_case(case.folder)
+    (case.folder.parent / "presets.toml").unlink()
+    with pytest.raises(CaseError, match="presets.toml: is missing"):
+        read_case(case.folder)
+
+
 MISTAKES = [
     ('summary = ".*?"', "", "'summary' is missing"),
     ('summary = ".*?"', "summary = 3", "'summary' must be a non-empty string"),

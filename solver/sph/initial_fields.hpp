@@ -92,6 +92,24 @@ struct SoundWaveField {
     }
 };
 
+/// A pulse of sound that travels along x through a uniform flow, to first order in U/c: with g = exp(-(x - centre)^2/(2
+/// width^2)), u = flow + U g, p = rho c U g towards +x and u = flow - U g, p = rho c U g towards -x.
+struct PulseField {
+    static constexpr std::string_view name = "pulse";
+    static constexpr LawInfo info{"u_x = flow +- speed g, p = rho c speed g, g = exp(-(x - centre)^2/(2 width^2))",
+                                  "speed << c", "Lighthill 1978, Waves in fluids, sec. 1.1"};
+    double speed, centre, width, flow; // [m/s], [m], [m], [m/s]
+    bool forwards;
+    explicit PulseField(Table& table)
+        : speed(table.number("speed", positive)), centre(table.number("centre")),
+          width(table.number("width", positive)), flow(table.number("flow")),
+          forwards(table.choice("towards", {"+x", "-x"}) == "+x") {}
+    FlowState operator()(const Vec3& x, const FluidNumbers& f) const {
+        const double s = (x[0] - centre) / width, u = speed * std::exp(-0.5 * s * s);
+        return {Vec3(flow + (forwards ? u : -u), 0.0, 0.0), f.density * f.sound_speed * u};
+    }
+};
+
 /// Developed laminar flow along x between plates: u = 3/2 mean (1 - (y - centre)^2/half_width^2), p falling to 0 at the
 /// far side of the box.
 struct ChannelField {
@@ -181,6 +199,6 @@ private:
 
 using InitialField =
     std::variant<RestField, UniformPressureField, TaylorGreenField, TaylorGreenCube, ShearWaveField, SoundWaveField,
-                 HydrostaticField, RotatingSquareField, ChannelField, UniformField, ManufacturedField>;
+                 PulseField, HydrostaticField, RotatingSquareField, ChannelField, UniformField, ManufacturedField>;
 
 } // namespace plumb

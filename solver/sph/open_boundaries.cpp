@@ -10,6 +10,8 @@ namespace plumb {
 
 namespace {
 
+constexpr double along_weight = 1e-3; // of a distance squared along the flow against one across, in row_mate
+
 std::int64_t buffer_layers(const SphFluid& f) {
     return static_cast<std::int64_t>(std::ceil((f.clusters.reach + f.clusters.skin) / f.spacing));
 }
@@ -56,6 +58,36 @@ void let_in(SphFluid& f) {
     }
 }
 
+/// Of the particles before `end` in the buffer of a side the one that is nearest to x across the flow, and of those in
+/// line the one nearest along it; `end` if the buffer is empty.
+std::size_t row_mate(const SphFluid& f, std::size_t side, const Vec3& x, std::size_t end) {
+    std::size_t mate = end;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < end; ++k) {
+        if (f.boundary.side[k] != static_cast<std::int32_t>(side)) continue;
+        const Vec3 away = f.domain.minimum_image(at(f.boundary.x, k, f.dimensions) - x);
+        const double along = away.dot(f.open_sides[side].normal);
+        const double distance = away.squaredNorm() - (1.0 - along_weight) * along * along;
+        if (distance < least) {
+            least = distance;
+            mate = k;
+        }
+    }
+    return mate;
+}
+
+/// A newcomer to the buffer of an outlet takes over the means of the particle ahead of it in its row. If it started
+/// them anew from the state it brings, a wave that passes would be taken for the mean and be sent back; taken from
+/// another row, where the mean speed is another one, they would look like a wave.
+void inherit_means(SphFluid& f, std::size_t side) {
+    BoundaryParticles& b = f.boundary;
+    const std::size_t newcomer = b.size() - 1;
+    const std::size_t k = row_mate(f, side, at(b.x, newcomer, f.dimensions), newcomer);
+    if (k == newcomer) return;
+    b.mean_speed[newcomer] = b.mean_speed[k];
+    b.mean_pressure[newcomer] = b.mean_pressure[k];
+}
+
 /// Fluid behind an outlet becomes part of its buffer.
 void let_out(SphFluid& f) {
     for (std::size_t s = 0; s < f.open_sides.size(); ++s) {
@@ -67,6 +99,7 @@ void let_out(SphFluid& f) {
         std::sort(leaving.begin(), leaving.end());
         for (const auto& [id, k] : leaving) {
             append(f, s, at(f.x, k, f.dimensions), at(f.v, k, f.dimensions));
+            inherit_means(f, s);
             f.id[k] = -1; // vanishes with the next order of the slots
             --f.particles;
         }

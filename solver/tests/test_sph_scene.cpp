@@ -356,6 +356,22 @@ TEST(SphScene, RotatingSquareHasThePressureOfTorsion) {
     EXPECT_NEAR(u[1], 1.5, 1e-13);
 }
 
+// A pulse whose pressure does not go with its direction splits into two.
+TEST(SphScene, PulseByFormula) {
+    for (const double sign : {1.0, -1.0}) {
+        Bench pulse(scene_text(2, {{"initial", fmt::format("{{law = \"pulse\", speed = 0.2, centre = 0.4, width = 0.1, "
+                                                           "towards = \"{}x\", flow = 0.5}}",
+                                                           sign > 0.0 ? "+" : "-")}}));
+        const SphFluid& f = pulse.fluid();
+        for (std::size_t k = 0; k < f.slots(); ++k) {
+            const double u = 0.2 * std::exp(-50.0 * std::pow(f.x[0][k] - 0.4, 2));
+            EXPECT_NEAR(f.v[0][k], 0.5 + sign * u, 1e-13);
+            EXPECT_EQ(f.v[1][k], 0.0);
+            EXPECT_NEAR(pressure(f, f.rho[k]), 1000.0 * 20.0 * u, 1e-8);
+        }
+    }
+}
+
 // Probes that count copies, forget a factor or a component, or take the wrong axis.
 TEST(SphScene, ProbesByHand) {
     const auto kick = [](SphFluid& f) { // particle 5: x = 0.275, y = 0.025, in space z = 0.025
