@@ -374,18 +374,6 @@ TEST(SphWalls, ClosedMeshesKnowTheirSide) {
     EXPECT_EQ(penetration(block, inside, 0.0, 0.01).depth, 0.0); // farther from the surface than is asked for
 }
 
-// Pressure of a fluid at rest: its derivative by g times depth is the density.
-TEST(SphWalls, HydrostaticPressureHasTheSlopeOfDensity) {
-    for_each_law<EquationOfState>([](auto law) {
-        const double rho = 1000.0, c = 20.0, potential = 9.0, e = 1e-4;
-        const double slope =
-            (law.hydrostatic_pressure(potential + e, rho, c) - law.hydrostatic_pressure(potential - e, rho, c)) /
-            (2.0 * e);
-        EXPECT_NEAR(slope, law.density(law.hydrostatic_pressure(potential, rho, c), rho, c), 1e-4);
-        EXPECT_EQ(law.hydrostatic_pressure(0.0, rho, c), 0.0);
-    });
-}
-
 // A fill that is shifted or inverted, and a surface that is a sine.
 TEST(SphWalls, FillsCutTheBox) {
     Bench part(scene_text(channel(), "fill = {law = \"box\", lower = [0.0, 0.0], upper = [0.5, 0.4]}"));
