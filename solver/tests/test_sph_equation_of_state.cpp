@@ -65,9 +65,9 @@ TEST(SphStates, TaitHasItsExponent) {
 TEST(SphEquationOfState, HydrostaticPressureHasTheSlopeOfDensity) {
     for_each_law<EquationOfState>([](auto law) {
         const double rest = 1000.0, speed = 20.0, potential = 9.0, e = 1e-4;
-        const double slope =
-            (law.hydrostatic_pressure(potential + e, rest, speed) - law.hydrostatic_pressure(potential - e, rest, speed)) /
-            (2.0 * e);
+        const double slope = (law.hydrostatic_pressure(potential + e, rest, speed) -
+                              law.hydrostatic_pressure(potential - e, rest, speed)) /
+                             (2.0 * e);
         EXPECT_NEAR(slope, law.density(law.hydrostatic_pressure(potential, rest, speed), rest, speed), 1e-4);
         EXPECT_EQ(law.hydrostatic_pressure(0.0, rest, speed), 0.0);
     });
