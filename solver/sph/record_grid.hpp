@@ -30,8 +30,8 @@ struct Columns {
     std::int32_t at(int axis, double x) const {
         const auto k = axis_(axis);
         const double c = std::floor(x * inverse_width[k]);
-        return static_cast<std::int32_t>(
-            std::clamp(c, static_cast<double>(-halo[k]), static_cast<double>(n[k] - 1 + halo[k])));
+        if (!(c > static_cast<double>(-halo[k]))) return -halo[k]; // NaN too
+        return static_cast<std::int32_t>(std::min(c, static_cast<double>(n[k] - 1 + halo[k])));
     }
     std::int32_t real(double x, double y) const {
         const std::int32_t a = std::clamp(at(0, x), 0, n[0] - 1);
@@ -58,8 +58,9 @@ struct RecordGrid {
 
     std::size_t records() const { return static_cast<std::size_t>(begin.back()); }
     std::size_t bin(double x_along) const {
-        return static_cast<std::size_t>(
-            std::clamp(std::floor((x_along - bin_origin) / columns.bin_width), 0.0, static_cast<double>(bins - 1)));
+        const double b = std::floor((x_along - bin_origin) / columns.bin_width);
+        if (!(b > 0.0)) return 0; // a NaN is nobody's neighbour, but must not be an index
+        return static_cast<std::size_t>(std::min(b, static_cast<double>(bins - 1)));
     }
 };
 

@@ -149,7 +149,7 @@ shape = "plane"
 point = [0.0, 0.8]
 normal = [0.0, -1.0]
 slip = "no_slip"
-velocity = [0.0, -0.1]
+velocity = [0.0, -0.02]
 [[inlet]]
 name = "in"
 point = [0.0, 0.4]
