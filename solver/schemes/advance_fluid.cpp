@@ -159,6 +159,7 @@ void advance_fluid(SphFluid& f, double dt, std::int64_t step) {
     fill_records(f, 0.5 * dt, dt);
     remember_rates(f);
     evaluate_terms(f);
+    keep_mean_density(f);
     add_sources(f, (static_cast<double>(step) - 0.5) * dt);
     correct(f, dt, step);
     move_boundary(f, 0.5 * dt);
@@ -175,6 +176,7 @@ void start(SphFluid& f) {
     fill_records(f, 0.0, 0.0);
     evaluate_terms(f);
     if (std::holds_alternative<VariableOperators>(f.operators)) evaluate_terms(f); // now with its Omega
+    keep_mean_density(f);
     add_sources(f, 0.0);
     if (f.memory == 0.0) return;
     f.a_before = f.a;

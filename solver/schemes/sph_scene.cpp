@@ -209,6 +209,9 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<Fl
     read_forces(table, f);
     read_source(table, f);
     f.free_surface = table.has("free_surface") && table.flag("free_surface");
+    f.keeps_mean_density = table.has("keep_mean_density") && table.flag("keep_mean_density");
+    if (f.keeps_mean_density && (f.free_surface || !open_sides.empty()))
+        table.fail("keep_mean_density", "only a closed volume keeps its mean density");
     f.walls = walls;
     f.open_sides = open_sides;
     if (std::holds_alternative<CorrectedOperators>(f.operators)) {

@@ -14,6 +14,15 @@ void evaluate_terms(SphFluid& f) {
     correct_continuity(f);
 }
 
+void keep_mean_density(SphFluid& f) {
+    if (!f.keeps_mean_density) return;
+    const std::vector<std::int32_t> slots = ordered_slots(f);
+    const double sum =
+        ordered_sum(slots.size(), 0.0, [&](std::size_t q) { return f.drho[static_cast<std::size_t>(slots[q])]; });
+    const double mean = sum / static_cast<double>(slots.size());
+    parallel_for(f.slots(), [&](std::size_t k) { f.drho[k] -= mean; });
+}
+
 void add_sources(SphFluid& f, double time) {
     if (std::holds_alternative<NoSource>(f.source)) return;
     const FluidNumbers numbers = fluid_numbers(f);

@@ -35,9 +35,10 @@ struct SphFluid {
     ViscousTerm viscous_term;
     Extras extras;
     Source source;
-    double shifting = 0.0;     // diffusivity of positions [m2/s], 0 without
-    bool free_surface = false; // particles near one are not shifted
-    double memory = 0.0;       // share of the rates before the last ones in the predictor (advance_fluid.hpp)
+    double shifting = 0.0;           // diffusivity of positions [m2/s], 0 without
+    bool free_surface = false;       // particles near one are not shifted
+    bool keeps_mean_density = false; // of a closed volume: see keep_mean_density
+    double memory = 0.0;             // share of the rates before the last ones in the predictor (advance_fluid.hpp)
 
     // what changes in time
     VectorField x, v, a;     // position [m], velocity [m/s], acceleration of the last evaluation [m/s2]
@@ -104,6 +105,11 @@ void restore_lists(SphFluid& fluid);
 
 /// Accelerations and density rates of all particles for the state in the records.
 void evaluate_terms(SphFluid& fluid);
+
+/// Takes the mean of the density rates out of them. A closed volume keeps its mean density; sums over particles that
+/// the flow has disordered let it creep (verification/mms derives how fast), and with it the pressure, by several rho
+/// U^2 in a long run.
+void keep_mean_density(SphFluid& fluid);
 
 /// Adds the scene's sources at a time [s] to the rates, at the particles' present places.
 void add_sources(SphFluid& fluid, double time);

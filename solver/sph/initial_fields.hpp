@@ -6,6 +6,7 @@
 #include "core/laws.hpp"
 #include "sph/manufactured_flow.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <variant>
@@ -160,7 +161,7 @@ struct HydrostaticField {
     explicit HydrostaticField(Table& table) : surface(table.number("surface")) {}
     FlowState operator()(const Vec3& x, const FluidNumbers& f) const {
         const double g = f.gravity.norm();
-        const double potential = larger(g * surface + f.gravity.dot(x), 0.0); // g times depth
+        const double potential = std::max(g * surface + f.gravity.dot(x), 0.0); // g times depth
         return {
             Vec3::Zero(),
             std::visit([&](const auto& law) { return law.hydrostatic_pressure(potential, f.density, f.sound_speed); },

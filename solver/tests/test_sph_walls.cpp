@@ -206,6 +206,17 @@ TEST(SphWalls, LidCornersAreNoSources) {
     EXPECT_GT(dragged, 1.0); // the lid's friction is still there
 }
 
+// A mean that is taken over copies too, or once: stirred in a closed box, the mean density stays to round-off.
+TEST(SphWalls, ClosedBoxKeepsItsMeanDensity) {
+    Bench bench(scene_text(channel("no_slip", "[2.0, 0.0]"), "keep_mean_density = true\ndensity_diffusion = 0.1"));
+    advance(bench.simulation, 300);
+    double mean = 0.0;
+    for (const std::int32_t k : ordered_slots(bench.fluid())) mean += bench.fluid().rho[static_cast<std::size_t>(k)];
+    EXPECT_NEAR(mean / 320.0, 1000.0, 1e-9);
+    expect_refused(scene_text(channel(), "keep_mean_density = true\nfree_surface = true"),
+                   {"fluid.keep_mean_density", "closed"});
+}
+
 // Pressure at a wall that is not continued against the weight: the column's lowest layer would fall.
 TEST(SphWalls, WallHoldsAgainstGravity) {
     Bench bench(scene_text(channel(), "", "[true, false]", "{law = \"hydrostatic\", surface = 0.8}", "[0.0, -10.0]"));

@@ -113,7 +113,7 @@ def last_third(run):
 
 
 def mean_at_places(run, component, s):
-    """at_places averaged over the last third of the run's outputs: the corner's noise never dies (README)."""
+    """at_places averaged over the last third of the run's outputs: the noise of disordered particles never dies."""
     return np.mean([at_places(run.scene, run.snapshot(k)["fluid"], component, s) for k in last_third(run)], axis=0)
 
 
