@@ -89,6 +89,7 @@ template <class Boundary, class Visit> void for_each_boundary_field(Boundary& b,
     }
     visit("sph/boundary/mean_speed", b.mean_speed);
     visit("sph/boundary/mean_pressure", b.mean_pressure);
+    visit("sph/boundary/rho", b.rho);
 }
 
 void write_sph(Hdf5Writer& file, const SphFluid& f) {

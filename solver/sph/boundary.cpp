@@ -118,6 +118,7 @@ void append_boundary_particle(BoundaryParticles& b, int dimensions, const Bounda
     b.slip.push_back(particle.slip);
     b.mean_speed.push_back(unknown);
     b.mean_pressure.push_back(unknown);
+    b.rho.push_back(unknown);
     b.fastest = std::max(b.fastest, particle.velocity.norm());
 }
 
@@ -134,6 +135,7 @@ void keep_boundary_particles(BoundaryParticles& b, int dimensions, const std::ve
     keep(b.slip);
     keep(b.mean_speed);
     keep(b.mean_pressure);
+    keep(b.rho);
 }
 
 namespace {
@@ -228,8 +230,10 @@ void continue_state(SphFluid& f, double since) {
             const std::size_t entry = pack_width * g + static_cast<std::size_t>(lane);
             if (entry >= b.size()) break; // the rest fills up the last group
             const auto k = static_cast<std::size_t>(b.member[entry]);
-            f.clusters.records[static_cast<std::size_t>(f.clusters.record_of_passive[k])] =
+            const FluidRecord record =
                 b.side[k] < 0 ? wall_record(f, k, group, lane) : open_record(f, k, group, lane, since);
+            f.clusters.records[static_cast<std::size_t>(f.clusters.record_of_passive[k])] = record;
+            b.rho[k] = f.mass / record.volume;
         }
     };
     parallel_chunks(

@@ -50,8 +50,7 @@ void let_in(SphFluid& f) {
         const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
         Vec3 x = at(b.x, k, f.dimensions);
         if (side.distance(x) < 0.0) continue;
-        const FluidRecord& state = f.clusters.records[static_cast<std::size_t>(f.clusters.record_of_passive[k])];
-        append_particle(f, x, at(b.velocity, k, f.dimensions), f.mass / state.volume);
+        append_particle(f, x, at(b.velocity, k, f.dimensions), b.rho[k]);
         x -= depth * side.normal;
         put(b.x, k, x, f.dimensions);
         put(b.mirror, k, side.reflected(x), f.dimensions);
