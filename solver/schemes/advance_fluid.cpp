@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "sph/vector_at.hpp"
 #include "sph/wall_particles.hpp"
 
 #include <algorithm>
@@ -126,11 +127,7 @@ void stop_at_walls(SphFluid& f, double dt, std::int64_t step) {
     if (f.walls.empty()) return;
     const double time = dt * (static_cast<double>(step) - 0.5);
     parallel_for(f.slots(), [&](std::size_t k) {
-        Vec3 x = Vec3::Zero(), v = Vec3::Zero();
-        for_each_axis(f, [&](std::size_t c) {
-            x[static_cast<Eigen::Index>(c)] = f.x[c][k];
-            v[static_cast<Eigen::Index>(c)] = f.v[c][k];
-        });
+        const Vec3 x = vector_at(f.x, k, f.dimensions), v = vector_at(f.v, k, f.dimensions);
         const Penetration p = penetration(f.walls, x, time, 2.0 * f.spacing);
         if (p.depth == 0.0) return;
         if (!f.free_surface) {

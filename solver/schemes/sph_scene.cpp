@@ -3,6 +3,7 @@
 #include "sph/arrange_fluid.hpp"
 #include "sph/initial_fields.hpp"
 #include "sph/lattice_rates.hpp"
+#include "sph/vector_at.hpp"
 
 #include <fmt/format.h>
 
@@ -141,8 +142,7 @@ void set_initial_state(Table& table, SphFluid& f) {
     if (std::holds_alternative<ManufacturedField>(initial)) check_manufactured_box(table, "initial", f.domain.size);
     const FluidNumbers numbers = fluid_numbers(f);
     for (std::size_t k = 0; k < f.slots(); ++k) {
-        Vec3 x = Vec3::Zero();
-        for (int c = 0; c < f.dimensions; ++c) x[c] = f.x[static_cast<std::size_t>(c)][k];
+        const Vec3 x = vector_at(f.x, k, f.dimensions);
         const FlowState state = std::visit([&](const auto& field) { return field(x, numbers); }, initial);
         for (int c = 0; c < f.dimensions; ++c) f.v[static_cast<std::size_t>(c)][k] = state.u[c];
         f.rho[k] = std::visit([&](const auto& law) { return law.density(state.p, f.density, f.sound_speed); },

@@ -3,6 +3,7 @@
 #include "core/parallel.hpp"
 #include "sph/fluid.hpp"
 #include "sph/interpolation.hpp"
+#include "sph/vector_at.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,12 +38,6 @@ std::vector<std::int32_t> sorted_mirrors(const SphFluid& f, const VectorField& m
     return order;
 }
 
-Vec3 at(const VectorField& field, std::size_t k, int dimensions) {
-    Vec3 x = Vec3::Zero();
-    for (int c = 0; c < dimensions; ++c) x[c] = field[static_cast<std::size_t>(c)][k];
-    return x;
-}
-
 Vec3 lane_of(const std::array<Pack, 3>& packs, int lane) { return {packs[0][lane], packs[1][lane], packs[2][lane]}; }
 
 FluidRecord record_of(const SphFluid& f, const Vec3& x, const Vec3& u, double p) {
@@ -53,12 +48,12 @@ FluidRecord record_of(const SphFluid& f, const Vec3& x, const Vec3& u, double p)
 FluidRecord wall_record(SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane) {
     BoundaryParticles& b = f.boundary;
     const Continuation &rule = b.rule[k], &slip = b.slip[k];
-    const Vec3 x = at(b.x, k, f.dimensions), fluid_u = lane_of(group.u, lane);
+    const Vec3 x = vector_at(b.x, k, f.dimensions), fluid_u = lane_of(group.u, lane);
     const bool wet = group.covered[lane] > least_cover;
     const Vec3 u = wet ? Vec3(rule.turn * fluid_u + rule.offset) : Vec3(0.5 * rule.offset);
     const Vec3 excess = wet ? Vec3(slip.turn * fluid_u + slip.offset - u) : Vec3(Vec3::Zero());
     for (int c = 0; c < f.dimensions; ++c) b.excess[static_cast<std::size_t>(c)][k] = excess[c];
-    const Vec3 away = f.domain.minimum_image(x - at(b.mirror, k, f.dimensions));
+    const Vec3 away = f.domain.minimum_image(x - vector_at(b.mirror, k, f.dimensions));
     return record_of(f, x, u, wet ? group.p[lane] + f.density * f.body_force.dot(away) : 0.0);
 }
 
@@ -76,11 +71,11 @@ FluidRecord open_record(SphFluid& f, std::size_t k, const InterpolatedGroup& gro
     BoundaryParticles& b = f.boundary;
     const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
     const double direction = side.is_inlet() ? 1.0 : -1.0, impedance = f.density * f.sound_speed;
-    const Vec3 e = direction * side.normal, x = at(b.x, k, f.dimensions), fluid_u = lane_of(group.u, lane);
+    const Vec3 e = direction * side.normal, x = vector_at(b.x, k, f.dimensions), fluid_u = lane_of(group.u, lane);
     const double speed = fluid_u.dot(e);
     const double p =
         group.p[lane] +
-        (side.is_inlet() ? lane_of(group.p_slope, lane).dot(Vec3(x - at(b.mirror, k, f.dimensions))) : 0.0);
+        (side.is_inlet() ? lane_of(group.p_slope, lane).dot(Vec3(x - vector_at(b.mirror, k, f.dimensions))) : 0.0);
     const double share = -std::expm1(-since / side.averaging_time);
     follow(b.mean_speed[k], speed, share);
     follow(b.mean_pressure[k], p, share);
@@ -244,7 +239,8 @@ void continue_state(SphFluid& f, double since) {
         16);
     if (f.open_sides.empty()) return;
     b.fastest = 0.0; // buffers have new velocities
-    for (std::size_t k = 0; k < b.size(); ++k) b.fastest = std::max(b.fastest, at(b.velocity, k, f.dimensions).norm());
+    for (std::size_t k = 0; k < b.size(); ++k)
+        b.fastest = std::max(b.fastest, vector_at(b.velocity, k, f.dimensions).norm());
 }
 
 void move_boundary(SphFluid& f, double dt) {

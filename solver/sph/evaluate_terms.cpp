@@ -1,6 +1,7 @@
 #include "sph/corrected_sweep.hpp"
 #include "sph/sweep.hpp"
 #include "sph/variable_sweep.hpp"
+#include "sph/vector_at.hpp"
 
 namespace plumb {
 
@@ -27,8 +28,7 @@ void add_sources(SphFluid& f, double time) {
     if (std::holds_alternative<NoSource>(f.source)) return;
     const FluidNumbers numbers = fluid_numbers(f);
     parallel_for(f.slots(), [&](std::size_t k) {
-        Vec3 x = Vec3::Zero();
-        for (int c = 0; c < f.dimensions; ++c) x[c] = f.x[static_cast<std::size_t>(c)][k];
+        const Vec3 x = vector_at(f.x, k, f.dimensions);
         const SourceRates rates = std::visit([&](const auto& law) { return law(x, time, numbers); }, f.source);
         for (int c = 0; c < f.dimensions; ++c) f.a[static_cast<std::size_t>(c)][k] += rates.acceleration[c];
         f.drho[k] += rates.density_rate;

@@ -1,5 +1,6 @@
 #include "sph/open_boundaries.hpp"
 
+#include "sph/vector_at.hpp"
 #include "sph/wall_particles.hpp"
 
 #include <algorithm>
@@ -17,12 +18,6 @@ std::int64_t buffer_layers(const SphFluid& f) {
 }
 
 double buffer_depth(const SphFluid& f) { return static_cast<double>(buffer_layers(f)) * f.spacing; }
-
-Vec3 at(const VectorField& field, std::size_t k, int dimensions) {
-    Vec3 x = Vec3::Zero();
-    for (int c = 0; c < dimensions; ++c) x[c] = field[static_cast<std::size_t>(c)][k];
-    return x;
-}
 
 void put(VectorField& field, std::size_t k, const Vec3& x, int dimensions) {
     for (int c = 0; c < dimensions; ++c) field[static_cast<std::size_t>(c)][k] = x[c];
@@ -48,9 +43,9 @@ void let_in(SphFluid& f) {
     for (std::size_t k = 0; k < b.size(); ++k) {
         if (b.side[k] < 0 || !f.open_sides[static_cast<std::size_t>(b.side[k])].is_inlet()) continue;
         const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
-        Vec3 x = at(b.x, k, f.dimensions);
+        Vec3 x = vector_at(b.x, k, f.dimensions);
         if (side.distance(x) < 0.0) continue;
-        append_particle(f, x, at(b.velocity, k, f.dimensions), b.rho[k]);
+        append_particle(f, x, vector_at(b.velocity, k, f.dimensions), b.rho[k]);
         x -= depth * side.normal;
         put(b.x, k, x, f.dimensions);
         put(b.mirror, k, side.reflected(x), f.dimensions);
@@ -64,7 +59,7 @@ std::size_t row_mate(const SphFluid& f, std::size_t side, const Vec3& x, std::si
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < end; ++k) {
         if (f.boundary.side[k] != static_cast<std::int32_t>(side)) continue;
-        const Vec3 away = f.domain.minimum_image(at(f.boundary.x, k, f.dimensions) - x);
+        const Vec3 away = f.domain.minimum_image(vector_at(f.boundary.x, k, f.dimensions) - x);
         const double along = away.dot(f.open_sides[side].normal);
         const double distance = away.squaredNorm() - (1.0 - along_weight) * along * along;
         if (distance < least) {
@@ -81,7 +76,7 @@ std::size_t row_mate(const SphFluid& f, std::size_t side, const Vec3& x, std::si
 void inherit_means(SphFluid& f, std::size_t side) {
     BoundaryParticles& b = f.boundary;
     const std::size_t newcomer = b.size() - 1;
-    const std::size_t k = row_mate(f, side, at(b.x, newcomer, f.dimensions), newcomer);
+    const std::size_t k = row_mate(f, side, vector_at(b.x, newcomer, f.dimensions), newcomer);
     if (k == newcomer) return;
     b.mean_speed[newcomer] = b.mean_speed[k];
     b.mean_pressure[newcomer] = b.mean_pressure[k];
@@ -93,11 +88,11 @@ void let_out(SphFluid& f) {
         if (f.open_sides[s].is_inlet()) continue;
         std::vector<std::pair<std::int32_t, std::size_t>> leaving; // by id: the order of slots must not matter
         for (std::size_t k = 0; k < f.slots(); ++k)
-            if (f.id[k] >= 0 && f.open_sides[s].distance(at(f.x, k, f.dimensions)) < 0.0)
+            if (f.id[k] >= 0 && f.open_sides[s].distance(vector_at(f.x, k, f.dimensions)) < 0.0)
                 leaving.emplace_back(f.id[k], k);
         std::sort(leaving.begin(), leaving.end());
         for (const auto& [id, k] : leaving) {
-            append(f, s, at(f.x, k, f.dimensions), at(f.v, k, f.dimensions));
+            append(f, s, vector_at(f.x, k, f.dimensions), vector_at(f.v, k, f.dimensions));
             inherit_means(f, s);
             f.id[k] = -1; // vanishes with the next order of the slots
             --f.particles;
@@ -111,8 +106,9 @@ void forget_far_ones(SphFluid& f) {
     std::vector<std::int32_t> kept;
     for (std::size_t k = 0; k < f.boundary.size(); ++k) {
         const std::int32_t s = f.boundary.side[k];
-        const bool far = s >= 0 && !f.open_sides[static_cast<std::size_t>(s)].is_inlet() &&
-                         f.open_sides[static_cast<std::size_t>(s)].distance(at(f.boundary.x, k, f.dimensions)) < -depth;
+        const bool far =
+            s >= 0 && !f.open_sides[static_cast<std::size_t>(s)].is_inlet() &&
+            f.open_sides[static_cast<std::size_t>(s)].distance(vector_at(f.boundary.x, k, f.dimensions)) < -depth;
         if (!far) kept.push_back(static_cast<std::int32_t>(k));
     }
     if (kept.size() < f.boundary.size()) keep_boundary_particles(f.boundary, f.dimensions, kept);
