@@ -28,8 +28,6 @@ SphFluid box(int dimensions, int n, double smoothing, bool extras) {
     f.viscous_term = Morris(term_scales(f));
     if (extras) {
         f.extras.diffusion = 2.0 * 0.1 * f.h * f.sound_speed;
-        f.extras.shifting = true;
-        f.extras.mass = f.mass;
         f.shifting = 4.0 * f.h * 1.0;
     }
     fill_box(f, 0.1, 1);
@@ -67,7 +65,7 @@ template <class T> double bytes(const T& v) {
 
 double held_bytes(const SphFluid& f) {
     double sum = bytes(f.rho) + bytes(f.drho) + bytes(f.drho_spread) + bytes(f.drho_before) + bytes(f.completeness) +
-                 bytes(f.id);
+                 bytes(f.spare) + bytes(f.id);
     for (const VectorField* field : {&f.x, &f.v, &f.a, &f.a_before, &f.spread, &f.dv_spread, &f.x_listed})
         for (const auto& component : *field) sum += bytes(component);
     const FluidClusters& c = f.clusters;

@@ -34,4 +34,14 @@ template <class T> struct CacheAligned {
 
 template <class T> using Field = std::vector<T, CacheAligned<T>>;
 
+/// Changes the size of a vector whose entries will all be written anew; resize() would copy the old ones and double the
+/// memory each time it grows by a few.
+template <class Vector> void renew_size(Vector& v, std::size_t n) {
+    if (n > v.capacity()) {
+        Vector().swap(v);
+        v.reserve(n + n / 32);
+    }
+    v.resize(n);
+}
+
 } // namespace plumb

@@ -61,6 +61,18 @@ inline bool any(PackMask m) {
 #endif
 }
 
+/// Bit k is set where a < b in lane k.
+inline unsigned lanes_below(Pack a, Pack b) {
+#ifdef __AVX512F__ // straight from the comparison; of a PackMask the compiler makes a register first
+    return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ);
+#else
+    const PackMask below = a < b;
+    unsigned bits = 0;
+    for (int lane = 0; lane < pack_width; ++lane) bits |= static_cast<unsigned>(below[lane] & 1) << lane;
+    return bits;
+#endif
+}
+
 /// Three numbers of space in a register of four; the fourth lane is 0.
 using HalfPack [[gnu::vector_size(32)]] = double;
 

@@ -2,11 +2,14 @@
 
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
+#include "core/simd.hpp"
 #include "sph/vector_at.hpp"
 #include "sph/wall_particles.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <cstring>
 
 namespace plumb {
 
@@ -86,38 +89,63 @@ void remember_rates(SphFluid& f) {
     throw Diverged(step, time, "fluid density", id, f.rho[k], "changed by more than half");
 }
 
-/// Moves a particle down the gradient of the concentration, by a tenth of the spacing at most, and gives it the
-/// velocity and density of the new place.
-void shift_particle(SphFluid& f, std::size_t k, double shift) {
-    double length_sq = 0.0;
-    for_each_axis(f, [&](std::size_t c) { length_sq += f.spread[c][k] * f.spread[c][k]; });
-    const double length = shift * std::sqrt(length_sq), most = 0.1 * f.spacing;
-    double factor = length > most ? shift * most / length : shift;
+Pack load(const Field<double>& field, std::size_t cluster) {
+    Pack value;
+    std::memcpy(&value, &field[pack_width * cluster], sizeof value);
+    return value;
+}
+void add(Field<double>& field, std::size_t cluster, Pack change) {
+    change += load(field, cluster);
+    std::memcpy(&field[pack_width * cluster], &change, sizeof change);
+}
+
+/// Moves eight particles down the gradient of the concentration, by a tenth of the spacing at most, and gives them the
+/// velocities and densities of the new places.
+void shift_particles(SphFluid& f, std::size_t cluster, double shift) {
+    Pack length_sq = broadcast<Pack>(0.0);
+    for_each_axis(f, [&](std::size_t c) {
+        const Pack spread = load(f.spread[c], cluster);
+        length_sq += spread * spread;
+    });
+    const Pack wanted = broadcast<Pack>(shift), most = broadcast<Pack>(0.1 * f.spacing);
+    const Pack length = wanted * square_root(length_sq);
+    Pack factor = select(length > most, wanted * most / length, wanted);
     // The gradient of the concentration points out of a free surface: fading from whole to a fifth of the neighbours
     // gone.
-    if (f.free_surface) factor *= std::clamp((f.completeness[k] - 0.8) / 0.15, 0.0, 1.0);
+    if (f.free_surface) {
+        const Pack inside = (load(f.completeness, cluster) - broadcast<Pack>(0.8)) / broadcast<Pack>(0.15);
+        factor *= smaller(larger(inside, broadcast<Pack>(0.0)), broadcast<Pack>(1.0));
+    }
     for_each_axis(f, [&](std::size_t c) {
-        f.x[c][k] += factor * f.spread[c][k];
-        f.v[c][k] += factor * f.dv_spread[c][k];
+        add(f.x[c], cluster, factor * load(f.spread[c], cluster));
+        add(f.v[c], cluster, factor * load(f.dv_spread[c], cluster));
     });
-    f.rho[k] += factor * f.drho_spread[k];
+    add(f.rho, cluster, factor * load(f.drho_spread, cluster));
 }
 
 /// v, rho and x at the end of the step, with the rates of its middle.
 void correct(SphFluid& f, double dt, std::int64_t step) {
-    const double shift = f.shifting * dt;
-    parallel_for(f.slots(), [&](std::size_t k) {
-        double speed_sq = 0.0;
+    assert(f.slots() % pack_width == 0);
+    const double shift = f.shifting * dt, slow = f.sound_speed * f.sound_speed, half = 0.5 * f.density;
+    const Pack interval = broadcast<Pack>(dt), half_interval = broadcast<Pack>(0.5 * dt);
+    parallel_for(f.slots() / pack_width, [&](std::size_t cluster) {
+        Pack speed_sq = broadcast<Pack>(0.0);
         for_each_axis(f, [&](std::size_t c) {
-            f.v[c][k] += dt * f.a[c][k];
-            f.x[c][k] += 0.5 * dt * f.v[c][k];
-            speed_sq += f.v[c][k] * f.v[c][k];
+            add(f.v[c], cluster, interval * load(f.a[c], cluster));
+            const Pack v = load(f.v[c], cluster);
+            add(f.x[c], cluster, half_interval * v);
+            speed_sq += v * v;
         });
-        f.rho[k] += dt * f.drho[k];
-        if (shift > 0.0) shift_particle(f, k, shift);
-        const bool sound = speed_sq <= f.sound_speed * f.sound_speed && // written so that NaN fails
-                           std::abs(f.rho[k] - f.density) <= 0.5 * f.density;
-        if (!sound) report_divergence(f, k, step, dt, std::sqrt(speed_sq));
+        add(f.rho, cluster, interval * load(f.drho, cluster));
+        if (shift > 0.0) shift_particles(f, cluster, shift);
+        const Pack change = load(f.rho, cluster) - broadcast<Pack>(f.density);
+        const PackMask sound = (speed_sq <= broadcast<Pack>(slow)) & // written so that NaN fails
+                               (change <= broadcast<Pack>(half)) & (change >= broadcast<Pack>(-half));
+        if (!any(~sound)) return;
+        for (int lane = 0; lane < pack_width; ++lane)
+            if (sound[lane] == 0)
+                report_divergence(f, pack_width * cluster + static_cast<std::size_t>(lane), step, dt,
+                                  std::sqrt(speed_sq[lane]));
     });
 }
 

@@ -70,8 +70,6 @@ void read_models(Table& table, SphFluid& f) {
     if (table.has("shifting")) { // D = A h U (Lind et al. 2012; A = 4 in the form of Sun et al. 2017)
         const double a = table.number("shifting", positive);
         f.shifting = a * f.h * table.number("reference_velocity", positive);
-        f.extras.shifting = true;
-        f.extras.mass = f.mass;
     }
     f.extras.softening_sq = 0.01 * f.h * f.h;
     f.clusters.reach =

@@ -130,8 +130,8 @@ public:
         for_each_column(columns.extended_count(), [&](std::size_t c) { grid_.begin[c + 1] = length_of(c); });
         for (std::size_t c = 1; c <= count; ++c) grid_.begin[c] += grid_.begin[c - 1];
         const std::size_t records = grid_.records();
-        clusters_.image_of.resize(records);
-        clusters_.image_shift.resize(records);
+        renew_size(clusters_.image_of, records);
+        renew_size(clusters_.image_shift, records);
         clusters_.passive.clear();
         clusters_.record_of_passive.clear();
         const std::size_t slots = static_cast<std::size_t>(sorted_.first_slot.back());
@@ -258,7 +258,7 @@ ClusterOrder rebuild(FluidClusters& clusters, const ParticlePlaces& places, cons
         });
     }
     list_records(clusters.lists, clusters.grid, place, domain.dimensions, reach, {});
-    clusters.records.resize(clusters.grid.records());
+    renew_size(clusters.records, clusters.grid.records());
     return order;
 }
 

@@ -64,9 +64,9 @@ template <int d, class M, class Body> void for_inverse(SphFluid& f, M& inverse, 
 }
 
 template <int d> void resize_fields(SphFluid& f) {
-    f.corrected.gradients.resize(corrected_stride<d> * f.clusters.records.size());
+    renew_size(f.corrected.gradients, corrected_stride<d> * f.clusters.records.size());
     Symmetric<Pack, d> sizes{};
-    for_inverse<d>(f, sizes, [&](Field<double>& field, const Pack&) { field.resize(f.slots()); });
+    for_inverse<d>(f, sizes, [&](Field<double>& field, const Pack&) { renew_size(field, f.slots()); });
 }
 
 /// Rates and gradients of a cluster from its sums.
@@ -85,7 +85,7 @@ template <int d> void store_corrected_rates(SphFluid& f, std::size_t cluster, do
         [&](const Pack& slope, const Pack& sum, const Pack& spread, const Components<Pack, d>& row) {
             const double force = f.body_force[static_cast<Eigen::Index>(axis)];
             store(f.a[axis], cluster, pair_scale * sum - slope / rho + broadcast<Pack>(force));
-            if (f.extras.shifting) {
+            if (f.shifting > 0.0) {
                 store(f.spread[axis], cluster, scale * spread);
                 store(f.dv_spread[axis], cluster, scale * dot(row, sums.spread));
             }
@@ -95,7 +95,7 @@ template <int d> void store_corrected_rates(SphFluid& f, std::size_t cluster, do
     Pack divergence = gradients.v.x.x + gradients.v.y.y;
     if constexpr (d == 3) divergence += gradients.v.z.z;
     store(f.drho, cluster, -rho * divergence);
-    if (f.extras.shifting) {
+    if (f.shifting > 0.0) {
         store(f.drho_spread, cluster, scale * dot(gradients.rho, sums.spread));
         store(f.completeness, cluster, scale * sums.completeness * broadcast<Pack>(1.0 / d));
     }
@@ -106,18 +106,20 @@ template <int d> void store_corrected_rates(SphFluid& f, std::size_t cluster, do
 template <class KernelLaw, int d> void first_pass(SphFluid& f) {
     const double gradient = KernelLaw::sigma(d) / std::pow(f.h, d + 2);
     const AnyPairViscosity viscous(f.viscous_term);
-    Extras extras = f.extras; // its gradients for shifting are those to be corrected
-    extras.shifting = true, extras.mass = f.mass, extras.diffusion = 0.0;
+    const auto artificial = [&, term = ArtificialViscosity(f.extras) ](const auto& p, const Side& a, const Side& b,
+                                                                       Sums<d>& sums) __attribute__((always_inline)) {
+        if (term.half != 0.0) term(p, a, b, sums);
+    };
     const MomentAndPressure moment{f.mass};
-    parallel_chunks(
-        f.clusters.count,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t c = begin; c < end; ++c)
-                store_corrected_rates<d>(
-                    f, c, gradient,
-                    sum_over_neighbours<KernelLaw, d>(f.clusters, c, 1.0 / f.h, moment, viscous, extras));
-        },
-        16);
+    const FieldGradients gradients{f.mass};
+    for_cluster_parts(f, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) {
+            Sums<d> sums = no_sums<d>();
+            add_over_neighbours<d>(f.clusters, c, Slope<KernelLaw>(f.h), sums, moment, viscous, artificial,
+                                   ConcentrationGradient{}, gradients);
+            store_corrected_rates<d>(f, c, gradient, sums);
+        }
+    });
 }
 
 /// Sums of the second pass, without the correction's scale.

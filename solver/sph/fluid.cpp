@@ -22,7 +22,7 @@ template <class Visit> void for_each_moving_field(SphFluid& f, Visit&& visit) {
 }
 
 void permute(Field<double>& field, const std::vector<std::int32_t>& from, Field<double>& spare) {
-    spare.resize(from.size());
+    renew_size(spare, from.size());
     parallel_for(from.size(), [&](std::size_t k) { spare[k] = field[static_cast<std::size_t>(from[k])]; });
     std::swap(field, spare);
 }
@@ -41,13 +41,12 @@ void wrap(Field<double>& x, const Domain& domain, std::size_t axis) {
 void rebuild_for(SphFluid& f, const VectorField& at) {
     const ClusterOrder order = rebuild(f.clusters, {at, f.id, f.boundary.x_listed}, f.domain, f.spacing);
     list_mirrors(f);
-    Field<double> spare;
-    for_each_moving_field(f, [&](Field<double>& field) { permute(field, order.from, spare); });
+    for_each_moving_field(f, [&](Field<double>& field) { permute(field, order.from, f.spare); });
     std::vector<std::int32_t> id(order.from.size());
     for (std::size_t k = 0; k < id.size(); ++k)
         id[k] = order.copy[k] != 0 ? -1 : f.id[static_cast<std::size_t>(order.from[k])];
     f.id = std::move(id);
-    if (!f.extras.shifting) return; // these are made anew by the next evaluation
+    if (f.shifting == 0.0) return; // these are made anew by the next evaluation
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
         for (VectorField* field : {&f.spread, &f.dv_spread}) (*field)[c].assign(f.id.size(), 0.0);
     f.drho_spread.assign(f.id.size(), 0.0);

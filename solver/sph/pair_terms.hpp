@@ -65,14 +65,15 @@ struct Side {
 template <int d> struct Sums {
     Components<Pack, d> acceleration; // dv/dt
     Pack density_rate;                // d rho/dt
-    // for shifting and corrected operators; without the factor m
-    Components<Pack, d> spread;                // -grad C, towards where particles are missing
-    Components<Components<Pack, d>, d> grad_v; // of each component of the velocity
-    Components<Pack, d> grad_rho;
-    Pack completeness; // sum V_b (x_b - x_a) . grad W, the divergence of the position
+    // for shifting; without the factor m
+    Components<Pack, d> spread;   // -grad C, towards where particles are missing
+    Pack completeness;            // sum V_b (x_b - x_a) . grad W, the divergence of the position
+    Components<Pack, d> dv_along; // derivatives of v and rho along the spread; without two such factors
+    Pack drho_along;              // [1/m], times m
     // for corrected operators, likewise
+    Components<Components<Pack, d>, d> grad_v; // of each component of the velocity
+    Components<Pack, d> grad_rho, grad_p;
     Symmetric<Pack, d> moment; // sum V (x_b - x_a) (x) grad W
-    Components<Pack, d> grad_p;
 };
 
 /// What the coefficients of the terms are made from.
@@ -178,55 +179,87 @@ struct DoubleGradient {
 using PairViscousTerm = std::variant<Inviscid, Morris, MonaghanGingold, Cleary>;
 using ViscousTerm = std::variant<Inviscid, Morris, MonaghanGingold, Cleary, DoubleGradient>;
 
-/// Terms that few scenes use, in one: each is skipped when its coefficient is zero, at the price of a branch that is
-/// always predicted. A scene without any takes NoExtras.
-struct NoExtras {
+/// Coefficients of the terms that few scenes use; without a coefficient a term is not evaluated.
+struct Extras {
+    double diffusion = 0.0;                              // 2 delta h c [m2/s]
+    double artificial = 0.0;                             // alpha c h/m [m2/(s kg)], for volumes in place of 1/rho
+    double softening_sq = 0.0;                           // 0.01 h^2 [m2]
+    bool stratified = false;                             // gravity compresses the fluid at rest
+    Components<double, 3> stratification{0.0, 0.0, 0.0}; // rho_0 g/(m c^2) [1/m4], [1/m3] in the plane
+
+    bool idle() const { return diffusion == 0.0 && artificial == 0.0; }
+};
+
+/// The absence of an optional term.
+struct NoTerm {
     template <int d>
     [[gnu::always_inline]] void operator()(const PairState<d>& /*p*/, const Side& /*a*/, const Side& /*b*/,
                                            Sums<d>& /*sums*/) const {}
 };
 
-struct Extras {
-    double diffusion = 0.0;    // 2 delta h c [m2/s]
-    double artificial = 0.0;   // alpha c h/m [m2/(s kg)], for volumes in place of 1/rho
-    double softening_sq = 0.0; // 0.01 h^2 [m2]
-    double mass = 0.0;         // [kg], for the gradient of the density
-    bool shifting = false;
-    bool stratified = false;                             // gravity compresses the fluid at rest
-    Components<double, 3> stratification{0.0, 0.0, 0.0}; // rho_0 g/(m c^2) [1/m4], [1/m3] in the plane
-
-    bool idle() const { return diffusion == 0.0 && artificial == 0.0 && !shifting; }
-
+/// d rho_a/dt = 2 delta h c sum (rho_b - rho_a) (x_b - x_a) . grad W/r^2 V_b (Molteni & Colagrossi 2009, Comput. Phys.
+/// Commun. 180, 861); (rho_b - rho_a) V_b = m (1 - V_b/V_a) and (x_b - x_a) . grad W/r^2 = -F. The density that belongs
+/// to hydrostatic pressure is left alone (Fourtakas et al. 2019, Comput. Fluids 190, 346).
+template <bool stratified> struct DensityDiffusion {
+    double coefficient;
+    Components<double, 3> stratification;
+    explicit DensityDiffusion(const Extras& e) : coefficient(e.diffusion), stratification(e.stratification) {}
     template <int d>
     [[gnu::always_inline]] void operator()(const PairState<d>& p, const Side& a, const Side& b, Sums<d>& sums) const {
-        // d rho_a/dt = 2 delta h c sum (rho_b - rho_a) (x_b - x_a) . grad W/r^2 V_b (Molteni & Colagrossi 2009, Comput.
-        // Phys. Commun. 180, 861); (rho_b - rho_a) V_b = m (1 - V_b/V_a) and (x_b - x_a) . grad W/r^2 = -F. The
-        // density that belongs to hydrostatic pressure is left alone (Fourtakas et al. 2019, Comput. Fluids 190, 346).
-        if (diffusion != 0.0) {
-            Pack difference = broadcast<Pack>(1.0) - b.volume * (broadcast<Pack>(1.0) / a.volume);
-            if (stratified) {
-                Pack head = broadcast<Pack>(stratification.x) * p.dx.x + broadcast<Pack>(stratification.y) * p.dx.y;
-                if constexpr (d == 3) head += broadcast<Pack>(stratification.z) * p.dx.z;
-                difference += b.volume * head;
-            }
-            sums.density_rate -= (broadcast<Pack>(diffusion) * p.f) * difference;
+        Pack difference = broadcast<Pack>(1.0) - b.volume * (broadcast<Pack>(1.0) / a.volume);
+        if constexpr (stratified) {
+            Pack head = broadcast<Pack>(stratification.x) * p.dx.x + broadcast<Pack>(stratification.y) * p.dx.y;
+            if constexpr (d == 3) head += broadcast<Pack>(stratification.z) * p.dx.z;
+            difference += b.volume * head;
         }
-        // dv_a/dt = sum m alpha c h/rho (dv . dx)/(r^2 + 0.01 h^2) grad W while approaching (Monaghan 1992, Annu. Rev.
-        // Astron. Astrophys. 30, 543), with the mean of 1/rho
-        if (artificial != 0.0) {
-            const Pack approach = smaller(p.dv_dx, broadcast<Pack>(0.0)) / (p.r_sq + broadcast<Pack>(softening_sq));
-            const Pack half = broadcast<Pack>(0.5 * artificial);
-            add(sums.acceleration, (p.f * approach) * (half * (a.volume + b.volume)), p.dx);
-        }
-        if (shifting) { // grad C = sum V_b grad W and, with differences, grad v and grad rho (Lind et al. 2012)
-            const Pack weight = p.f * b.volume;
-            subtract(sums.spread, weight, p.dx);
-            sums.completeness -= weight * p.r_sq;
-            for_components<d>([&](Components<Pack, d>& grad, const Pack& dv) { subtract(grad, weight * dv, p.dx); },
-                              sums.grad_v, p.dv);
-            const Pack one = broadcast<Pack>(1.0);
-            add(sums.grad_rho, p.f * (broadcast<Pack>(mass) * (one - b.volume * (one / a.volume))), p.dx);
-        }
+        sums.density_rate -= (broadcast<Pack>(coefficient) * p.f) * difference;
+    }
+};
+
+/// dv_a/dt = sum m alpha c h/rho (dv . dx)/(r^2 + 0.01 h^2) grad W while approaching (Monaghan 1992, Annu. Rev. Astron.
+/// Astrophys. 30, 543), with the mean of 1/rho.
+struct ArtificialViscosity {
+    double half, softening_sq;
+    explicit ArtificialViscosity(const Extras& e) : half(0.5 * e.artificial), softening_sq(e.softening_sq) {}
+    template <int d>
+    [[gnu::always_inline]] void operator()(const PairState<d>& p, const Side& a, const Side& b, Sums<d>& sums) const {
+        const Pack approach = smaller(p.dv_dx, broadcast<Pack>(0.0)) / (p.r_sq + broadcast<Pack>(softening_sq));
+        add(sums.acceleration, (p.f * approach) * (broadcast<Pack>(half) * (a.volume + b.volume)), p.dx);
+    }
+};
+
+/// grad C = sum V_b grad W, along which shifting moves particles (Lind et al. 2012, J. Comput. Phys. 231, 1499).
+struct ConcentrationGradient {
+    template <int d>
+    [[gnu::always_inline]] void operator()(const PairState<d>& p, const Side& /*a*/, const Side& b,
+                                           Sums<d>& sums) const {
+        const Pack weight = p.f * b.volume;
+        subtract(sums.spread, weight, p.dx);
+        sums.completeness -= weight * p.r_sq;
+    }
+};
+
+/// s . grad v and s . grad rho, of differences, for s = -grad C: sums that need the sum of ConcentrationGradient.
+template <int d> struct AlongSpread {
+    Components<Pack, d> spread;
+    [[gnu::always_inline]] void operator()(const PairState<d>& p, const Side& a, const Side& b, Sums<d>& sums) const {
+        const Pack along = p.f * dot(p.dx, spread), one = broadcast<Pack>(1.0);
+        subtract(sums.dv_along, along * b.volume, p.dv);
+        sums.drho_along += along * (one - b.volume * (one / a.volume));
+    }
+};
+
+/// grad v and grad rho, of differences.
+struct FieldGradients {
+    double mass = 0.0; // [kg]
+    template <int d>
+    [[gnu::always_inline]] void operator()(const PairState<d>& p, const Side& a, const Side& b, Sums<d>& sums) const {
+        const Pack weight = p.f * b.volume, one = broadcast<Pack>(1.0);
+        for_components<d>(
+            [&](Components<Pack, d> & grad, const Pack& dv)
+                __attribute__((always_inline)) { subtract(grad, weight * dv, p.dx); },
+            sums.grad_v, p.dv);
+        add(sums.grad_rho, p.f * (broadcast<Pack>(mass) * (one - b.volume * (one / a.volume))), p.dx);
     }
 };
 

@@ -1,7 +1,9 @@
 #include "sph/record_grid.hpp"
 
+#include "core/field.hpp"
 #include "core/parallel.hpp"
 
+#include <bit>
 #include <cstring>
 #include <limits>
 
@@ -34,7 +36,7 @@ void make_bins(RecordGrid& grid) {
         4.0 * static_cast<double>(grid.records()) / static_cast<double>(grid.columns.extended_count()) + 64.0;
     grid.bins = static_cast<std::int32_t>(std::clamp((high - low) / grid.columns.bin_width + 1.0, 1.0, most));
     const auto stride = static_cast<std::size_t>(grid.bins) + 1;
-    grid.bin_begin.resize(static_cast<std::size_t>(grid.columns.extended_count()) * stride);
+    renew_size(grid.bin_begin, static_cast<std::size_t>(grid.columns.extended_count()) * stride);
     parallel_chunks(
         grid.begin.size() - 1,
         [&](std::size_t first, std::size_t last) {
@@ -65,10 +67,26 @@ template <int d> PlaceGroup group_of(const std::array<std::vector<double>, 3>& p
     return box;
 }
 
+/// A list that grows by many at once and is written without asking each time whether there is room.
+struct OpenList {
+    std::vector<std::int32_t> entries; // more than `size`, for what comes
+    std::size_t size = 0;
+
+    /// Room for `more` behind the entries that are there.
+    std::int32_t* room(std::size_t more) {
+        if (entries.size() < size + more) entries.resize(2 * (size + more));
+        return &entries[size];
+    }
+};
+
 /// Appends the records [begin, end) that are nearer than `reach` to a place of the group.
 template <int d>
 void append_near(const PlaceGroup& box, const RecordGrid& grid, std::int32_t begin, std::int32_t end, double reach_sq,
-                 const std::vector<std::uint8_t>& left_out, std::vector<std::int32_t>& list) {
+                 const std::vector<std::uint8_t>& left_out, OpenList& list) {
+    if (begin >= end) return;
+    const Pack limit = broadcast<Pack>(reach_sq);
+    std::int32_t* out = list.room(static_cast<std::size_t>(end - begin) + 1);
+    const std::int32_t* const first = out;
     for (std::int32_t r = begin; r < end; r += pack_width) {
         Pack outside_sq{}; // squared distance to the box
         for (std::size_t axis = 0; axis < d; ++axis) {
@@ -78,25 +96,27 @@ void append_near(const PlaceGroup& box, const RecordGrid& grid, std::int32_t beg
             const Pack outside = larger(larger(below, above), broadcast<Pack>(0.0));
             outside_sq += outside * outside;
         }
-        const PackMask candidates = outside_sq < broadcast<Pack>(reach_sq);
-        if (!any(candidates)) continue;
-        for (std::int32_t lane = 0; lane < std::min(end - r, pack_width); ++lane) {
-            if (candidates[lane] == 0) continue;
-            const auto record = static_cast<std::size_t>(r + lane);
+        unsigned candidates = lanes_below(outside_sq, limit);
+        if (end - r < pack_width) candidates &= (1U << static_cast<unsigned>(end - r)) - 1U;
+        for (; candidates != 0; candidates &= candidates - 1) {
+            const std::int32_t at = r + std::countr_zero(candidates);
+            const auto record = static_cast<std::size_t>(at);
             if (!left_out.empty() && left_out[record] != 0) continue;
             Pack distance_sq{};
             for (std::size_t axis = 0; axis < d; ++axis) {
                 const Pack dx = box.x[axis] - broadcast<Pack>(grid.x[axis][record]);
                 distance_sq += dx * dx;
             }
-            if (any(distance_sq < broadcast<Pack>(reach_sq))) list.push_back(r + lane);
+            *out = at;
+            out += lanes_below(distance_sq, limit) != 0 ? 1 : 0;
         }
     }
+    list.size += static_cast<std::size_t>(out - first);
 }
 
 template <int d>
 void list_group(const PlaceGroup& box, const RecordGrid& grid, double reach, const std::vector<std::uint8_t>& left_out,
-                std::vector<std::int32_t>& list) {
+                OpenList& list) {
     constexpr std::size_t along = d - 1;
     const Columns& columns = grid.columns;
     const auto stride = static_cast<std::size_t>(grid.bins) + 1;
@@ -116,18 +136,19 @@ void list_all(NeighbourLists& lists, const RecordGrid& grid, const std::array<st
     constexpr std::size_t per_part = NeighbourLists::groups_per_part;
     const std::size_t groups = place[0].size() / pack_width;
     lists.parts.resize((groups + per_part - 1) / per_part);
-    lists.part_end.resize(groups);
+    renew_size(lists.part_end, groups);
     parallel_chunks(
         groups,
         [&](std::size_t first, std::size_t last) {
-            std::vector<std::int32_t> part;
-            part.reserve(256 * per_part);
+            OpenList part;
+            part.entries.resize(256 * per_part);
             for (std::size_t c = first; c < last; ++c) {
                 list_group<d>(group_of<d>(place, c), grid, reach, left_out, part);
-                lists.part_end[c] = static_cast<std::int32_t>(part.size());
+                lists.part_end[c] = static_cast<std::int32_t>(part.size);
             }
-            part.insert(part.end(), NeighbourLists::padding, 0);
-            lists.parts[first / per_part].assign(part.begin(), part.end()); // holds no more than it needs
+            std::fill_n(part.room(NeighbourLists::padding), NeighbourLists::padding, 0);
+            const auto end = part.entries.begin() + static_cast<std::ptrdiff_t>(part.size + NeighbourLists::padding);
+            lists.parts[first / per_part].assign(part.entries.begin(), end); // holds no more than it needs
         },
         per_part);
 }

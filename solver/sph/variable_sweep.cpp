@@ -17,7 +17,7 @@ double smoothing_length(const SphFluid& f, double volume) {
 /// What a pair needs to know of each record's smoothing length; boundary particles have Omega = 1.
 template <class KernelLaw> void fill_lengths(SphFluid& f) {
     const FluidClusters& clusters = f.clusters;
-    f.lengths.of_record.resize(clusters.records.size());
+    renew_size(f.lengths.of_record, clusters.records.size());
     if (f.lengths.omega.size() != f.slots()) f.lengths.omega.assign(f.slots(), 1.0);
     const auto length_of = [&](std::int32_t record, double omega) {
         const auto r = static_cast<std::size_t>(record);
@@ -37,7 +37,7 @@ template <class KernelLaw> void fill_lengths(SphFluid& f) {
 }
 
 template <class KernelLaw, int d, class Viscous>
-void evaluate_cluster(SphFluid& f, std::size_t cluster, const Viscous& viscous) {
+void evaluate_cluster(SphFluid& f, std::size_t cluster, const Viscous& viscous, Field<Pack>& slopes) {
     Pack lanes[8];
     load_cluster(f.clusters, cluster, lanes);
     Pack inverse_h, factor, factor_over_omega;
@@ -50,10 +50,9 @@ void evaluate_cluster(SphFluid& f, std::size_t cluster, const Viscous& viscous) 
     const auto x = components<d>(lanes[0], lanes[1], lanes[2]), v = components<d>(lanes[4], lanes[5], lanes[6]);
     const Side a{lanes[3], lanes[7]};
     const Pack zero = broadcast<Pack>(0.0), half = broadcast<Pack>(0.5), reach = broadcast<Pack>(KernelLaw::support);
-    const auto nothing = components<d>(zero, zero, zero);
-    Sums<d> sums{nothing, zero, nothing,           components<d>(nothing, nothing, nothing),
-                 nothing, zero, all_zero<d>(zero), nothing};
+    Sums<d> sums = no_sums<d>();
     Pack growth = zero; // sum of d w + q w', which is -h^(d+1)/sigma dW/dh
+    slopes.clear();
     for (const std::int32_t record : f.clusters.near(cluster)) {
         const FluidRecord& b = f.clusters.records[static_cast<std::size_t>(record)];
         const RecordLength& length = f.lengths.of_record[static_cast<std::size_t>(record)];
@@ -74,10 +73,12 @@ void evaluate_cluster(SphFluid& f, std::size_t cluster, const Viscous& viscous) 
         growth += inside * (broadcast<Pack>(d) * KernelLaw::w(q) + q * q * shape);
         p.f = half * (factor * shape + broadcast<Pack>(length.factor) * other_shape);
         viscous(p, a, other, sums);
-        f.extras(p, a, other, sums);
+        if (f.shifting > 0.0) ConcentrationGradient{}(p, a, other, sums);
+        slopes.push_back(p.f);
     }
+    add_extras<d>(f, cluster, slopes, sums);
     store_rates<d>(f, cluster, f.mass, sums);
-    if (f.extras.shifting) store_spread<d>(f, cluster, 1.0, sums);
+    if (f.shifting > 0.0) store_spread<d>(f, cluster, 1.0, sums);
     // m/rho is the volume; factor h^2 = sigma/h^d
     store(f.lengths.omega, cluster,
           broadcast<Pack>(1.0) - a.volume * factor / (inverse_h * inverse_h) * growth * broadcast<Pack>(1.0 / d));
@@ -91,7 +92,8 @@ template <class KernelLaw, int d> void evaluate_all(SphFluid& f) {
                 parallel_chunks(
                     f.clusters.count,
                     [&](std::size_t begin, std::size_t end) {
-                        for (std::size_t c = begin; c < end; ++c) evaluate_cluster<KernelLaw, d>(f, c, viscous);
+                        Field<Pack> slopes;
+                        for (std::size_t c = begin; c < end; ++c) evaluate_cluster<KernelLaw, d>(f, c, viscous, slopes);
                     },
                     16);
         },

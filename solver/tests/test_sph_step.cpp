@@ -34,8 +34,6 @@ SphFluid vortex(int dimensions = 2) {
 
 void set_shifting(SphFluid& f) {
     f.shifting = 4.0 * f.h * 2.0; // A h U
-    f.extras.shifting = true;
-    f.extras.mass = f.mass;
 }
 
 /// Advances by `steps` steps; returns how often the lists were renewed.

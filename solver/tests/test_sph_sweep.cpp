@@ -31,8 +31,7 @@ void set_extras(SphFluid& f, const Strengths& s) {
     f.extras.diffusion = 2.0 * s.delta * f.h * f.sound_speed;
     f.extras.artificial = s.alpha * f.sound_speed * f.h / f.mass;
     f.extras.softening_sq = 0.01 * f.h * f.h;
-    f.extras.shifting = s.shifting;
-    f.extras.mass = f.mass;
+    f.shifting = s.shifting ? f.h * f.sound_speed : 0.0;
 }
 
 void set_viscosity(SphFluid& f, const ViscousTerm& law, double mu) {
