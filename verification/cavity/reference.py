@@ -93,7 +93,7 @@ def reference(quantity, scene, t):
         return ghia(quantity[0], re)[1]
     if quantity in EXTREMES:
         return extreme(quantity, re)[0]
-    if quantity == "drift":
+    if quantity in ("drift", "lines_rms"):
         return 0.0
     raise KeyError(quantity)
 
@@ -132,6 +132,8 @@ def drift(run):
 def measure(quantity, run):
     if quantity == "drift":
         return drift(run)
+    if quantity == "lines_rms":
+        return root_mean_square_error(run)
     if quantity in ("u_vertical", "v_horizontal"):
         return np.arange(NODES), mean_at_places(run, quantity[0], np.linspace(0.0, 1.0, NODES))
     if quantity in ("u_ghia", "v_ghia"):
@@ -161,24 +163,6 @@ def table(runs):
     return {"columns": columns, "rows": rows, "caption": "Error of the mean over the last third of the run on both centre lines; drift is the greatest change in a tenth of the run there."}
 
 
-def work_precision(runs):
-    """Error against CPU time at Re 100: the sweep as a line, option sets as points."""
-    import matplotlib.pyplot as plt
-
-    figure, axis = plt.subplots(figsize=(5.2, 3.6))
-    usable = [run for run in runs if run.failure is None and reynolds(run.scene) == 100]
-    points = {run: (run.info["cpu_s"], root_mean_square_error(run)) for run in usable}
-    standard = sorted(point for run, point in points.items() if run.variant.startswith("re_100"))
-    axis.loglog(*zip(*standard), "k.-", lw=0.8, label="standard options")
-    for run, point in points.items():
-        if not run.variant.startswith("re_100"):
-            axis.loglog(*point, "o", ms=5, label=run.variant)
-    axis.set(xlabel="CPU time (s)", ylabel="error (rms, of U)")
-    axis.legend(fontsize=7)
-    figure.tight_layout()
-    return "work_precision", figure, "Re 100: error on the centre lines, mean over the last third of the run, against CPU time."
-
-
 def figures(runs):
     """Both centre lines of the finest run of every Reynolds number, with the recomputed profile and Ghia's tables."""
     import matplotlib.pyplot as plt
@@ -196,4 +180,4 @@ def figures(runs):
             axis.set(xlabel="$y/L$" if component == "u" else "$x/L$", title=f"Re {re}: ${component}/U$")
             axis.legend(fontsize=6)
     figure.tight_layout()
-    return [work_precision(runs), ("centre_lines", figure, "u on the vertical and v on the horizontal centre line, finest run of each Reynolds number.")]
+    return [("centre_lines", figure, "u on the vertical and v on the horizontal centre line, finest run of each Reynolds number.")]
