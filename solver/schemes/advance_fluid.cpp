@@ -7,6 +7,7 @@
 #include "sph/wall_particles.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <cstring>
@@ -149,20 +150,22 @@ void correct(SphFluid& f, double dt, std::int64_t step) {
     });
 }
 
-/// Particles behind a wall. Lone ones, at a free surface, meet no pressure that could stop them: they are put back to
-/// the surface and lose the velocity into the wall. In the bulk, one that is a spacing deep has diverged.
+/// Particles behind a wall. Lone ones, at a free surface, meet no pressure that could stop them; in the bulk one may be
+/// drawn in beside a void, and half a spacing is further than any pressure lets it come. They are put back to the
+/// surface, lose the velocity into the wall and are counted. One that is a whole spacing deep all the same has
+/// diverged.
 void stop_at_walls(SphFluid& f, double dt, std::int64_t step) {
     if (f.walls.empty()) return;
-    const double time = dt * (static_cast<double>(step) - 0.5);
+    const double time = dt * (static_cast<double>(step) - 0.5), allowed = f.free_surface ? 0.0 : 0.5 * f.spacing;
+    std::atomic<std::int64_t> put_back{0};
     parallel_for(f.slots(), [&](std::size_t k) {
         const Vec3 x = vector_at(f.x, k, f.dimensions), v = vector_at(f.v, k, f.dimensions);
         const Penetration p = penetration(f.walls, x, time, 2.0 * f.spacing);
-        if (p.depth == 0.0) return;
-        if (!f.free_surface) {
-            if (p.depth < f.spacing) return;
+        if (p.depth <= allowed) return;
+        if (!f.free_surface && p.depth >= f.spacing)
             throw Diverged(step, dt * static_cast<double>(step), "fluid position", f.id[k], p.depth,
                            "behind a wall by more than a spacing");
-        }
+        if (f.id[k] >= 0) ++put_back;
         const double into = std::min((v - p.wall_velocity).dot(p.normal), 0.0);
         for_each_axis(f, [&](std::size_t c) {
             const double n = p.normal[static_cast<Eigen::Index>(c)];
@@ -170,6 +173,7 @@ void stop_at_walls(SphFluid& f, double dt, std::int64_t step) {
             f.v[c][k] -= into * n;
         });
     });
+    f.put_back += put_back;
 }
 
 } // namespace

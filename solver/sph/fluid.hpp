@@ -53,6 +53,7 @@ struct SphFluid {
     std::vector<std::int32_t> id; // order of creation; -1 in copies and in particles that are about to vanish
     std::int32_t next_id = 0;
     std::size_t particles = 0; // number of them
+    std::int64_t put_back = 0; // how often a particle was brought back from behind a wall
     Field<double> spare;       // for sorting the others
     FluidClusters clusters;
     CorrectedFields corrected; // of the last evaluation; empty with plain operators

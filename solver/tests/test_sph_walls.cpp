@@ -278,6 +278,14 @@ TEST(SphWalls, ParticlesBehindWallsAreStopped) {
         drop, [](const Vec3&) { return Vec3(0.0, -5.0, 0.0); }, [](const Vec3&) { return 0.0; });
     advance(lone.simulation, 3000);
     for (std::size_t k = 0; k < drop.slots(); ++k) EXPECT_GT(drop.x[1][k], -0.01);
+    EXPECT_GT(drop.put_back, 0);
+    Bench drawn_in(scene_text(channel())); // beside a void, say
+    SphFluid& fluid = drawn_in.fluid();
+    fluid.x[1][0] = -0.6 * fluid.spacing;
+    fluid.v[1][0] = -1.0;
+    advance(drawn_in.simulation, 1);
+    EXPECT_EQ(fluid.put_back, 1);
+    for (std::size_t k = 0; k < fluid.slots(); ++k) EXPECT_GT(fluid.x[1][k], -0.1 * fluid.spacing);
     Bench full(scene_text(channel()));
     full.fluid().x[1][0] = -0.06;
     full.fluid().v[1][0] = -19.0;
