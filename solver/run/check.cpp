@@ -120,7 +120,7 @@ Json sph_part(const Simulation& s) {
             {"Mach", fastest / f.sound_speed},
             {"Re_per_m", nu > 0.0 ? fastest / nu : none},
             {"acoustic_Re", nu > 0.0 ? f.h * f.sound_speed / nu : none},
-            {"artificial_nu_over_nu", nu > 0.0 ? artificial_nu(f) / nu : none}};
+            {"artificial_nu", artificial_nu(f)}};
 }
 
 Json sph_cost_part(const Run& run) {
@@ -225,10 +225,10 @@ void print_sph(const Json& part, std::string& text) {
     text +=
         fmt::format("fluid           {} particles in {} dimensions, kernel {}, h = {:.4g} m, c = {:.4g} m/s\n"
                     "  at the start  speed {:.4g} m/s, Mach {:.3g}, Re/length {:.4g} 1/m, h c/nu {:.4g}, artificial "
-                    "viscosity/nu {:.3g}\n",
+                    "viscosity acts like nu = {:.3g} m2/s\n",
                     part["particles"].get<std::int64_t>(), part["dimensions"].get<int>(),
                     part["kernel"].get<std::string>(), number("h"), number("sound_speed"), number("speed"),
-                    number("Mach"), number("Re_per_m"), number("acoustic_Re"), number("artificial_nu_over_nu"));
+                    number("Mach"), number("Re_per_m"), number("acoustic_Re"), number("artificial_nu"));
 }
 
 void print_remarks(const Json& part, std::string_view title, std::string& text) {

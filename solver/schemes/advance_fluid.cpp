@@ -86,7 +86,8 @@ void remember_rates(SphFluid& f) {
     const double time = dt * static_cast<double>(step);
     const std::int32_t id = f.id[k] >= 0 ? f.id[k] : f.id[k / pack_width * pack_width];
     if (!(speed <= f.sound_speed))
-        throw Diverged(step, time, "fluid velocity", id, speed, "more than the speed of sound");
+        throw Diverged(step, time, "fluid velocity", id, speed,
+                       std::isfinite(speed) ? "more than the speed of sound" : "not a number");
     throw Diverged(step, time, "fluid density", id, f.rho[k], "changed by more than half");
 }
 

@@ -25,10 +25,13 @@ constexpr double acoustic_share = 0.25, viscous_share = 0.6, shifting_share = 1.
 constexpr double skin_in_spacings = 0.25;
 
 /// Speed of sound that keeps density changes near 1 % and lets pressure keep up with viscosity: ten times the velocity,
-/// ten times sqrt(pressure drop/rho), and acoustic Reynolds number h c/nu = 20.
+/// ten times sqrt(pressure drop/rho), and acoustic Reynolds number h c/nu = 20. Where the particles feel gravity, ten
+/// times the speed of a fall through the box too.
 double automatic_sound_speed(Table& table, const SphFluid& f) {
     const double velocity = table.number("reference_velocity", positive);
-    const double drop = table.number_or("pressure_drop", 0.0, non_negative);
+    double drop = table.number_or("pressure_drop", 0.0, non_negative);
+    if (table.has("pressure") && table.choice("pressure", {"full", "dynamic"}) == "full")
+        drop = std::max(drop, 2.0 * f.density * f.domain.gravity.cwiseAbs().dot(f.domain.size));
     return std::max({10.0 * velocity, 10.0 * std::sqrt(drop / f.density), 20.0 * f.viscosity / (f.density * f.h)});
 }
 
@@ -67,8 +70,8 @@ void read_models(Table& table, SphFluid& f) {
     const double alpha = table.number_or("artificial_viscosity", 0.0, non_negative);
     f.extras.diffusion = 2.0 * delta * f.h * f.sound_speed;
     f.extras.artificial = alpha * f.sound_speed * f.h / f.mass;
-    if (table.has("shifting")) { // D = A h U (Lind et al. 2012; A = 4 in the form of Sun et al. 2017)
-        const double a = table.number("shifting", positive);
+    if (table.has("shifting")) { // D = A h U (Lind et al. 2012; A = 4 in the form of Sun et al. 2017); 0 is none
+        const double a = table.number("shifting", non_negative);
         f.shifting = a * f.h * table.number("reference_velocity", positive);
     }
     f.extras.softening_sq = 0.01 * f.h * f.h;
@@ -126,6 +129,41 @@ std::function<bool(const Vec3&)> filled_part(Table& table, const SphFluid& f) {
     };
 }
 
+/// Every place beside the fluid must hold fluid, a wall or an open side, unless there is a free surface.
+void check_enclosed(const Table& table, const SphFluid& f) {
+    if (f.free_surface) return;
+    std::array<std::int64_t, 3> n{1, 1, 1};
+    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
+        n[c] = std::llround(f.domain.size[static_cast<Eigen::Index>(c)] / f.spacing);
+    const auto number = [&](const std::array<std::int64_t, 3>& cell) {
+        return static_cast<std::size_t>(cell[0] + n[0] * (cell[1] + n[1] * cell[2]));
+    };
+    const auto cell_of = [&](std::size_t k) {
+        std::array<std::int64_t, 3> cell{0, 0, 0};
+        for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
+            cell[c] = std::clamp<std::int64_t>(static_cast<std::int64_t>(f.x[c][k] / f.spacing), 0, n[c] - 1);
+        return cell;
+    };
+    std::vector<bool> filled(static_cast<std::size_t>(n[0] * n[1] * n[2]), false);
+    for (std::size_t k = 0; k < f.slots(); ++k) filled[number(cell_of(k))] = true;
+    for (std::size_t k = 0; k < f.slots(); ++k)
+        for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
+            for (const int way : {-1, 1}) {
+                std::array<std::int64_t, 3> beside = cell_of(k);
+                beside[c] += way;
+                Vec3 x = Vec3::Zero();
+                for (int a = 0; a < f.dimensions; ++a)
+                    x[a] = (static_cast<double>(beside[static_cast<std::size_t>(a)]) + 0.5) * f.spacing;
+                if (f.domain.periodic[c]) beside[c] = (beside[c] + n[c]) % n[c];
+                const bool inside = beside[c] >= 0 && beside[c] < n[c];
+                if ((inside && filled[number(beside)]) || is_solid(f.walls, x) || is_outside(f.open_sides, x)) continue;
+                table.fail("free_surface",
+                           fmt::format("missing: the fluid ends at x = {:.4g}, y = {:.4g}, z = {:.4g} m, where there "
+                                       "is neither a wall nor a periodic or open side",
+                                       x[0], x[1], x[2]));
+            }
+}
+
 void set_initial_state(Table& table, SphFluid& f) {
     Table arrange = table.law("arrange");
     const bool jittered = arrange.choice("law", {"lattice", "jittered"}) == "jittered";
@@ -133,9 +171,12 @@ void set_initial_state(Table& table, SphFluid& f) {
     const auto seed = static_cast<std::uint64_t>(jittered ? arrange.integer("seed", 0) : 0);
     check_spacing(table, f);
     fill_box(f, jitter, seed, filled_part(table, f));
-    if (f.slots() == 0) table.fail("arrange", "there is no place for the fluid");
+    if (f.slots() == 0)
+        table.fail("arrange", "there is no place for the fluid: every place of the lattice is behind a wall, beyond an "
+                              "open side or not in `fill`");
     line_walls(f);
     fill_buffers(f);
+    check_enclosed(table, f);
     const auto initial = make_family<InitialField>(table.law("initial"));
     if (std::holds_alternative<ManufacturedField>(initial)) check_manufactured_box(table, "initial", f.domain.size);
     const FluidNumbers numbers = fluid_numbers(f);
@@ -143,8 +184,11 @@ void set_initial_state(Table& table, SphFluid& f) {
         const Vec3 x = vector_at(f.x, k, f.dimensions);
         const FlowState state = std::visit([&](const auto& field) { return field(x, numbers); }, initial);
         for (int c = 0; c < f.dimensions; ++c) f.v[static_cast<std::size_t>(c)][k] = state.u[c];
-        f.rho[k] = std::visit([&](const auto& law) { return law.density(state.p, f.density, f.sound_speed); },
-                              f.equation_of_state);
+        f.rho[k] = density_of_pressure(f, state.p);
+        if (!(std::abs(f.rho[k] - f.density) < 0.5 * f.density)) // NaN too: Tait's law ends at -rho c^2/7
+            table.fail("sound_speed", fmt::format("{:.6g} m/s are too few: the initial pressure of {:.6g} Pa would "
+                                                  "change the density by more than half",
+                                                  f.sound_speed, state.p));
     }
 }
 
@@ -207,6 +251,8 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<Fl
     read_forces(table, f);
     read_source(table, f);
     f.free_surface = table.has("free_surface") && table.flag("free_surface");
+    if (f.free_surface && !f.extras.stratified && f.domain.gravity.norm() > 0.0)
+        table.fail("pressure", "\"dynamic\" leaves no gravity to hold a free surface");
     f.keeps_mean_density = table.has("keep_mean_density") && table.flag("keep_mean_density");
     if (f.keeps_mean_density && (f.free_surface || !open_sides.empty()))
         table.fail("keep_mean_density", "only a closed volume keeps its mean density");
@@ -238,7 +284,8 @@ double sound_share(const SphFluid& f) {
 
 std::vector<StepLimit> fluid_limits(const SphFluid& f) {
     const double none = std::numeric_limits<double>::infinity();
-    const double damping = greatest_viscous_rate(f), force = f.body_force.norm();
+    const double damping = greatest_viscous_rate(f), diffusion = greatest_diffusion_rate(f);
+    const double force = f.body_force.norm();
     const double shift = f.shifting > 0.0 ? f.shifting * greatest_concentration_rate(f) : 0.0;
     return {{"acoustic", acoustic_share * sound_share(f) * f.h / f.sound_speed,
              "0.25 h/c, less where nothing damps sound (integrator midpoint, no diffusion, h c/nu > 100)"},
@@ -246,6 +293,8 @@ std::vector<StepLimit> fluid_limits(const SphFluid& f) {
              "0.6 over the greatest rate of the viscous operator on a lattice"},
             {"shifting", shift > 0.0 ? shifting_share / shift : none,
              "1 over the greatest rate at which shifting evens out the concentration"},
+            {"diffusion", diffusion > 0.0 ? viscous_share / (diffusion * (1.0 + f.memory)) : none,
+             "0.6 over the greatest rate of density diffusion on a lattice"},
             {"force", force > 0.0 ? force_share * std::sqrt(f.h / force) : none, "0.25 sqrt(h/f)"}};
 }
 

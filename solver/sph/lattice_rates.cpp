@@ -84,32 +84,63 @@ template <class Law> double double_gradient_rate(const SphFluid& f) {
 
 } // namespace
 
+namespace {
+
+/// Greatest rate of sum strength V F (dv . dx)/(r^2 + softening) dx, a damping along the lines of centres [1/s].
+template <class Law> double central_rate(const SphFluid& f, double strength, double softening_sq) {
+    const double factor = strength * f.mass / f.density * gradient_factor<Law>(f);
+    const auto rate = [&](const Vec3& dx, double q) -> Eigen::Matrix3d {
+        return -factor * Law::f(q) / (dx.squaredNorm() + softening_sq) * dx * dx.transpose();
+    };
+    return std::max(greatest_rate(f, shares(f, Law::support, rate)), strength * phaseless_rate<Law>(f) / f.dimensions);
+}
+
+/// The same of sum strength V F dv, which does not look at directions.
+template <class Law> double scalar_rate(const SphFluid& f, double strength) {
+    const double factor = strength * f.mass / f.density * gradient_factor<Law>(f);
+    const auto rate = [&](const Vec3& /*dx*/, double q) -> Eigen::Matrix3d {
+        return -factor * Law::f(q) * unit(f.dimensions);
+    };
+    return std::max(greatest_rate(f, shares(f, Law::support, rate)), strength * phaseless_rate<Law>(f));
+}
+
+} // namespace
+
 double greatest_viscous_rate(const SphFluid& f) {
-    if (f.viscosity == 0.0) return 0.0;
     const double volume = f.mass / f.density;
+    const double artificial = f.extras.artificial * f.mass; // alpha c h; only half of the pairs approach
+    const double added =
+        artificial == 0.0
+            ? 0.0
+            : std::visit(
+                  [&](const auto& kernel) {
+                      return central_rate<std::decay_t<decltype(kernel)>>(f, artificial, f.extras.softening_sq);
+                  },
+                  f.kernel);
+    return added + std::visit(
+                       [&](const auto& kernel, const auto& term) {
+                           using Law = std::decay_t<decltype(kernel)>;
+                           using Term = std::decay_t<decltype(term)>;
+                           if constexpr (std::is_same_v<Term, Inviscid>) {
+                               return 0.0;
+                           } else if constexpr (std::is_same_v<Term, DoubleGradient>) {
+                               return f.viscosity / f.density * double_gradient_rate<Law>(f);
+                           } else {
+                               const double strength = term.coefficient * f.mass * volume; // 2 nu for Morris
+                               if constexpr (std::is_same_v<Term, Morris>)
+                                   return scalar_rate<Law>(f, strength);
+                               else
+                                   return central_rate<Law>(f, strength, term.softening_sq);
+                           }
+                       },
+                       f.kernel, f.viscous_term);
+}
+
+double greatest_diffusion_rate(const SphFluid& f) {
+    if (f.extras.diffusion == 0.0) return 0.0;
     return std::visit(
-        [&](const auto& kernel, const auto& term) {
-            using Law = std::decay_t<decltype(kernel)>;
-            using Term = std::decay_t<decltype(term)>;
-            if constexpr (std::is_same_v<Term, Inviscid>) {
-                return 0.0;
-            } else if constexpr (std::is_same_v<Term, DoubleGradient>) {
-                return f.viscosity / f.density * double_gradient_rate<Law>(f);
-            } else {
-                constexpr bool scalar = std::is_same_v<Term, Morris>;       // the others act along the line of centres
-                const double strength = term.coefficient * f.mass * volume; // 2 nu for Morris
-                const double factor = strength * volume * gradient_factor<Law>(f);
-                const auto rate = [&](const Vec3& dx, double q) -> Eigen::Matrix3d {
-                    if constexpr (scalar)
-                        return -factor * Law::f(q) * unit(f.dimensions);
-                    else
-                        return -factor * Law::f(q) / (dx.squaredNorm() + term.softening_sq) * dx * dx.transpose();
-                };
-                return std::max(greatest_rate(f, shares(f, Law::support, rate)),
-                                strength * phaseless_rate<Law>(f) / (scalar ? 1.0 : f.dimensions));
-            }
-        },
-        f.kernel, f.viscous_term);
+        [&](const auto& kernel) { return scalar_rate<std::decay_t<decltype(kernel)>>(f, f.extras.diffusion); },
+        f.kernel);
 }
 
 double greatest_concentration_rate(const SphFluid& f) {

@@ -7,8 +7,11 @@
 
 namespace plumb {
 
-/// Greatest rate at which the viscous term damps a velocity [1/s]; 0 without one.
+/// Greatest rate at which the viscous term and artificial viscosity damp a velocity [1/s]; 0 without either.
 double greatest_viscous_rate(const SphFluid& fluid);
+
+/// Greatest rate at which density diffusion evens out a density [1/s]; 0 without it.
+double greatest_diffusion_rate(const SphFluid& fluid);
 
 /// Greatest rate at which a shift down the gradient of the concentration undoes a displacement, for a diffusivity of
 /// positions of 1 m2/s [1/m2].

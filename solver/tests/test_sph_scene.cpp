@@ -204,12 +204,14 @@ TEST(SphScene, AutomaticSoundSpeed) {
     const auto speed = [](const Keys& more) {
         Keys keys{{"sound_speed", "\"auto\""}, {"reference_velocity", "0.5"}};
         keys.insert(more.begin(), more.end());
+        if (keys.count("pressure") == 0) keys["pressure"] = "\"dynamic\"";
         Bench bench(scene_text(2, keys));
         return bench.fluid().sound_speed;
     };
     EXPECT_NEAR(speed({}), 5.0, 1e-13);
-    EXPECT_NEAR(speed({{"pressure_drop", "4000.0"}}), 20.0, 1e-13); // 10 sqrt(4)
-    EXPECT_NEAR(speed({{"viscosity", "30.0"}}), 8.0, 1e-13);        // 20 nu/h = 20 x 0.03/0.075
+    EXPECT_NEAR(speed({{"pressure", "\"full\""}}), 10.0 * std::sqrt(2.0 * 9.81 * 0.8), 1e-12); // a fall through the box
+    EXPECT_NEAR(speed({{"pressure_drop", "4000.0"}}), 20.0, 1e-13);                            // 10 sqrt(4)
+    EXPECT_NEAR(speed({{"viscosity", "30.0"}}), 8.0, 1e-13); // 20 nu/h = 20 x 0.03/0.075
     EXPECT_NEAR(speed({{"viscosity", "30.0"}, {"pressure_drop", "4000.0"}}), 20.0, 1e-13);
 }
 
@@ -225,6 +227,18 @@ TEST(SphScene, StepLimits) {
         EXPECT_NEAR(seconds_of(limits, "acoustic"), std::cbrt(100.0 / 500.0) * sound, 1e-12); // h c/nu = 500, undamped
         Bench damped(scene_text(d, {{"viscosity", "3.0"}, {"density_diffusion", "0.1"}}));
         EXPECT_NEAR(seconds_of(damped.simulation.timing.limits, "acoustic"), sound, 1e-15);
+        // density diffusion is Morris' sum with delta h c for nu
+        EXPECT_TRUE(std::isinf(seconds_of(limits, "diffusion")));
+        EXPECT_NEAR(seconds_of(damped.simulation.timing.limits, "diffusion"), 0.6 / 7.0 * 0.075 / (0.1 * 20.0), 1e-7);
+        // artificial viscosity of all pairs alike: a central form of 2 (d + 2) nu = alpha h c
+        const double nu = 0.1 * 0.075 * 20.0 / (2.0 * (d + 2));
+        Bench braked(
+            scene_text(d, {{"viscosity", "0.0"}, {"viscous_term", "\"none\""}, {"artificial_viscosity", "0.1"}}));
+        Bench central(
+            scene_text(d, {{"viscosity", std::to_string(1000.0 * nu)}, {"viscous_term", "\"monaghan_gingold\""}}));
+        EXPECT_NEAR(seconds_of(braked.simulation.timing.limits, "viscous") /
+                        seconds_of(central.simulation.timing.limits, "viscous"),
+                    1.0, 1e-5);
         EXPECT_NEAR(seconds_of(limits, "viscous"), 0.6 / 7.0 * time, 1e-5 * time);
         EXPECT_NEAR(seconds_of(limits, "force"), 0.25 * std::sqrt(0.075 / 9.81), 1e-12);
         EXPECT_TRUE(std::isinf(seconds_of(limits, "shifting")));
@@ -260,7 +274,13 @@ TEST(SphScene, BadFluidIsAnInputError) {
     refused({{"density_diffusion", "-0.1"}}, {"fluid.density_diffusion", "-0.1"});
     refused({{"artificial_viscosity", "-0.1"}}, {"fluid.artificial_viscosity", "-0.1"});
     refused({{"shifting", "4.0"}}, {"fluid.reference_velocity: missing"});
-    refused({{"shifting", "0.0"}, {"reference_velocity", "0.5"}}, {"fluid.shifting", "0"});
+    refused({{"sound_speed", "2.0"}, {"initial", "{law = \"uniform_pressure\", pressure = -600.0}"}},
+            {"fluid.sound_speed", "too few", "-600"}); // Tait's law ends at -rho c^2/7 = -571
+    refused({{"free_surface", "true"}, {"pressure", "\"dynamic\""}}, {"fluid.pressure", "free surface"});
+    for (const int d : {2, 3}) // nothing holds the fluid along y
+        expect_refused(scene_text(d, {}, {{"periodic", d == 2 ? "[true, false]" : "[true, false, true]"}}),
+                       {"fluid.free_surface", "the fluid ends at"});
+    refused({{"shifting", "-1.0"}, {"reference_velocity", "0.5"}}, {"fluid.shifting", "-1"});
     refused({{"pressure", "\"total\""}}, {"fluid.pressure", "total", "dynamic"});
     refused({{"body_force", "[1.0]"}}, {"fluid.body_force"});
     refused({{"arrange", "\"heap\""}}, {"fluid.arrange", "heap", "lattice"});

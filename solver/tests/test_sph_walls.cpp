@@ -395,9 +395,11 @@ TEST(SphWalls, ClosedMeshesKnowTheirSide) {
 
 // A fill that is shifted or inverted, and a surface that is a sine.
 TEST(SphWalls, FillsCutTheBox) {
-    Bench part(scene_text(channel(), "fill = {law = \"box\", lower = [0.0, 0.0], upper = [0.5, 0.4]}"));
+    Bench part(
+        scene_text(channel(), "free_surface = true\nfill = {law = \"box\", lower = [0.0, 0.0], upper = [0.5, 0.4]}"));
     EXPECT_EQ(part.fluid().particles, 80U);
     Bench wave(scene_text(channel(),
+                          "free_surface = true\n"
                           "fill = {law = \"wave\", axis = \"y\", depth = 0.4, amplitude = 0.1, wave_length = 1.0}"));
     const SphFluid& f = wave.fluid();
     for (std::size_t k = 0; k < f.slots(); ++k)
