@@ -12,11 +12,11 @@ sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
 from theory import sph_operators  # noqa: E402
 
-UNITS = {name: "1" for name in ("disorder", *(f"{limit}.{kind}" for limit in ("acoustic", "viscous", "shifting")
+UNITS = {name: "1" for name in ("disorder", *(f"{limit}.{kind}" for limit in ("acoustic", "viscous", "diffusion", "shifting")
                                               for kind in ("stable", "unstable", "boundary")))}
 
-# Shares that the solver documents (plumb check): 0.25 h/c (less without damping), 0.6 over the viscous rate, 1 over the rate of shifting.
-SHARE = {"acoustic": 0.25, "viscous": 0.6, "shifting": 1.0}
+# Shares that the solver documents (plumb check): 0.25 h/c (less without damping), 0.6 over the viscous rate and that of density diffusion, 1 over the rate of shifting.
+SHARE = {"acoustic": 0.25, "viscous": 0.6, "diffusion": 0.6, "shifting": 1.0}
 GROWTH = math.sqrt(2.0)  # of an amplitude while its energy doubles, which ends the measurement
 STRENGTH = {"morris": lambda d: 2.0, "monaghan_gingold": lambda d: 2.0 * (d + 2), "cleary": lambda d: 2.0 * 4.96333}
 
@@ -67,8 +67,7 @@ class Lattice:
         matrix = np.zeros((len(self.k), d + 1, d + 1), complex)
         matrix[:, :d, :d] = -self.viscosities()
         matrix[:, :d, d] = matrix[:, d, :d] = -1j * c * self.gradients()
-        diffusion = 2.0 * self.fluid.get("density_diffusion", 0.0) * self.h * c
-        matrix[:, d, d] = self.differences(diffusion * self.f(self.r))
+        matrix[:, d, d] = self.differences(self.diffusion() * self.f(self.r))
         return np.linalg.eigvals(matrix)
 
     def concentration_rates(self):
@@ -79,12 +78,19 @@ class Lattice:
         diffusivity = self.fluid["shifting"] * self.h * self.fluid["reference_velocity"]
         return diffusivity * np.linalg.eigvalsh(self.differences(hessian))
 
-    def phaseless_viscous_rate(self):
-        """1/s: the viscous sum over many neighbours whose phases differ as if by chance."""
+    def phaseless_sum(self):
+        """1/m2: sum V (-F) over many neighbours: what a wave feels whose phases differ as if by chance."""
         q, weight = sph_operators._nodes(self.fluid["kernel"])
-        total = weight @ (-self.kernel.sigma[self.d] * self.kernel.slope(q) / q * sph_operators.SHELL[self.d](q)) / self.h**2
+        return weight @ (-self.kernel.sigma[self.d] * self.kernel.slope(q) / q * sph_operators.SHELL[self.d](q)) / self.h**2
+
+    def phaseless_viscous_rate(self):
+        """1/s: the same of the viscous term."""
         term = self.fluid["viscous_term"]
-        return STRENGTH[term](self.d) * self.nu * total / (1.0 if term == "morris" else self.d)
+        return STRENGTH[term](self.d) * self.nu * self.phaseless_sum() / (1.0 if term == "morris" else self.d)
+
+    def diffusion(self):
+        """2 delta h c, m2/s."""
+        return 2.0 * self.fluid.get("density_diffusion", 0.0) * self.h * self.fluid["sound_speed"]
 
 
 def decay_share(integrator):
@@ -110,6 +116,9 @@ def predicted_limit(lattice, name, integrator):
     if name == "viscous":
         greatest = np.linalg.eigvalsh(lattice.viscosities()).max()
         return SHARE[name] * decay_share(integrator) / max(greatest, lattice.phaseless_viscous_rate())
+    if name == "diffusion":
+        greatest = max(lattice.differences(-lattice.diffusion() * lattice.f(lattice.r)).max(), lattice.diffusion() * lattice.phaseless_sum())
+        return SHARE[name] * decay_share(integrator) / greatest
     return SHARE[name] / lattice.concentration_rates().max()
 
 
