@@ -48,7 +48,7 @@ struct Prediction {
 /// Records of the state half a step ahead of v and rho, `since` after the last ones; x is there already.
 void fill_records(SphFluid& f, double half, double since) {
     const Prediction rate{half * (1.0 + f.memory), -half * f.memory};
-    const bool remembers = f.memory > 0.0;
+    const bool remembers = f.memory > 0.0, grains = f.among_grains();
     std::visit(
         [&](const auto& law) {
             parallel_for(f.slots(), [&](std::size_t k) {
@@ -63,7 +63,8 @@ void fill_records(SphFluid& f, double half, double since) {
                     velocity[c] =
                         f.v[c][k] + rate.last * f.a[c][k] + (remembers ? rate.before * f.a_before[c][k] : 0.0);
                 });
-                record.p_over_rho_sq = law.pressure(rho, f.density, f.sound_speed) / (rho * rho);
+                const double own = grains ? rho * f.share[k] / f.eps[k] : rho;
+                record.p_over_rho_sq = law.pressure(own, f.density, f.sound_speed) / (rho * rho);
                 record.volume = f.mass / rho;
                 f.clusters.records[static_cast<std::size_t>(f.clusters.record_of[k])] = record;
             });

@@ -239,7 +239,7 @@ void check_periodic_sides(const Domain& domain, double reach_and_skin, const std
                             reach_and_skin));
 }
 
-ClusterOrder rebuild(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing) {
+ClusterOrder arrange(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing) {
     const double reach = clusters.reach + clusters.skin;
     check_periodic_sides(domain, reach, "");
     clusters.grid.columns = make_columns(domain, spacing, reach);
@@ -250,15 +250,26 @@ ClusterOrder rebuild(FluidClusters& clusters, const ParticlePlaces& places, cons
     clusters.count = order.from.size() / pack_width;
     Layout(clusters, sorted, entries, domain).make();
     make_bins(clusters.grid);
+    renew_size(clusters.records, clusters.grid.records());
+    return order;
+}
+
+std::array<std::vector<double>, 3> lane_places(const FluidClusters& clusters, int dimensions) {
     std::array<std::vector<double>, 3> place;
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(domain.dimensions); ++axis) {
-        place[axis].resize(order.from.size());
-        parallel_for(order.from.size(), [&](std::size_t s) {
+    const std::size_t lanes = clusters.record_of.size();
+    for (std::size_t axis = 0; axis < static_cast<std::size_t>(dimensions); ++axis) {
+        place[axis].resize(lanes);
+        parallel_for(lanes, [&](std::size_t s) {
             place[axis][s] = clusters.grid.x[axis][static_cast<std::size_t>(clusters.record_of[s])];
         });
     }
-    list_records(clusters.lists, clusters.grid, place, domain.dimensions, reach, {});
-    renew_size(clusters.records, clusters.grid.records());
+    return place;
+}
+
+ClusterOrder rebuild(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing) {
+    ClusterOrder order = arrange(clusters, places, domain, spacing);
+    list_records(clusters.lists, clusters.grid, lane_places(clusters, domain.dimensions), domain.dimensions,
+                 clusters.reach + clusters.skin, {});
     return order;
 }
 

@@ -59,8 +59,14 @@ struct ClusterOrder {
     std::vector<std::uint8_t> copy;
 };
 
-/// Sorts the particles and builds lists and records' places. The result depends on positions and ids only.
+/// Sorts the particles into clusters and lays out their records. The result depends on positions and ids only.
 /// InputError when a periodic side is shorter than two reaches.
+ClusterOrder arrange(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing);
+
+/// Where the records of the clusters' lanes are, by axis [m].
+std::array<std::vector<double>, 3> lane_places(const FluidClusters& clusters, int dimensions);
+
+/// arrange, and the lists of the records near each cluster.
 ClusterOrder rebuild(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing);
 
 /// Copies the records of particles to their images, shifted by whole sides.

@@ -16,6 +16,7 @@ template <class Visit> void for_each_moving_field(SphFluid& f, Visit&& visit) {
     visit(f.rho);
     visit(f.drho);
     if (!f.lengths.omega.empty()) visit(f.lengths.omega);
+    if (f.among_grains()) visit(f.share);
     if (f.memory == 0.0) return;
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) visit(f.a_before[c]);
     visit(f.drho_before);

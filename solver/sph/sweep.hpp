@@ -97,6 +97,11 @@ inline Pack* room_for_slopes(Field<Pack>& slopes, const FluidClusters& clusters,
     return slopes.data();
 }
 
+inline Pack load(const Field<double>& field, std::size_t cluster) {
+    Pack value;
+    std::memcpy(&value, &field[pack_width * cluster], sizeof value);
+    return value;
+}
 inline void store(Field<double>& field, std::size_t cluster, Pack value) {
     std::memcpy(&field[pack_width * cluster], &value, sizeof value);
 }
@@ -104,10 +109,11 @@ inline void store(Field<double>& field, std::size_t cluster, Pack value) {
 /// Accelerations and density rates of a cluster: its sums times `factor`, and the body force.
 template <int d> void store_rates(SphFluid& f, std::size_t cluster, double factor, const Sums<d>& sums) {
     const Pack scale = broadcast<Pack>(factor);
+    const Pack inertia = f.among_grains() ? scale / load(f.share, cluster) : scale;
     std::size_t axis = 0;
     for_components<d>(
         [&](const Pack& sum) {
-            store(f.a[axis], cluster, scale * sum + broadcast<Pack>(f.body_force[static_cast<Eigen::Index>(axis)]));
+            store(f.a[axis], cluster, inertia * sum + broadcast<Pack>(f.body_force[static_cast<Eigen::Index>(axis)]));
             ++axis;
         },
         sums.acceleration);
