@@ -170,7 +170,7 @@ std::vector<Vec3> block_accelerations(const GrainSystem& system) {
 /// for the next drift: reading back what has just been stored in parts would stall. `corrects` is false when there was
 /// no step.
 [[gnu::always_inline]] inline MotionState kick_grain(GrainSystem& system, std::size_t k, double dt,
-                                                     const FluidForcing* forcing, const std::vector<Vec3>& block,
+                                                     FluidForcing* forcing, const std::vector<Vec3>& block,
                                                      bool corrects) {
     Grains& g = system.grains;
     const Wrench wrench = contact_wrench(system, k);
@@ -186,6 +186,11 @@ std::vector<Vec3> block_accelerations(const GrainSystem& system) {
         now.omega += (0.5 * dt) * (before.alpha + now.alpha);
         store3(g.v[k].data(), now.v);
         store3(g.omega[k].data(), now.omega);
+        if (forcing != nullptr && !forcing->impulse.empty() && g.mobility[k] > 0.0) {
+            const HalfPack others = (0.5 * dt / g.mobility[k]) * (before.a + now.a);
+            const HalfPack received = g.mass[k] * (now.v - before.v) - others;
+            forcing->impulse[k] += Vec3(received[0], received[1], received[2]);
+        }
     }
     store3(g.a[k].data(), now.a);
     store3(g.alpha[k].data(), now.alpha);
@@ -204,7 +209,7 @@ double allowed_distance(const GrainSystem& system, double dt) {
 /// One pass over all grains: ends a step (kicks), begins the next (drifts), or both. Returns true when the neighbour
 /// list does not hold for the new positions. `corrects` as for kick_grain.
 template <bool kicks, bool drifts>
-bool move_grains(GrainSystem& system, double dt, const FluidForcing* forcing, bool corrects) {
+bool move_grains(GrainSystem& system, double dt, FluidForcing* forcing, bool corrects) {
     Grains& g = system.grains;
     const std::vector<Vec3> block = kicks && has_block(system) ? block_accelerations(system) : std::vector<Vec3>();
     const bool collide = !contactless(system.contact);
@@ -244,6 +249,10 @@ void reorder_forcing(FluidForcing& forcing, const std::vector<std::int32_t>& ord
     forcing.memory.resize(n * forcing.memory_size, 0.0);
     for (auto* field : {&forcing.phi0, &forcing.phi1, &forcing.phi2}) reorder(*field, order);
     reorder(forcing.drive, order);
+    if (!forcing.impulse.empty()) {
+        forcing.impulse.resize(n, Vec3::Zero());
+        reorder(forcing.impulse, order);
+    }
     const std::vector<double> before = forcing.memory;
     const std::size_t size = forcing.memory_size;
     for (std::size_t k = 0; k < order.size(); ++k)

@@ -15,6 +15,9 @@ namespace plumb {
 struct FluidForcing {
     std::vector<Vec3> drive; // rate * u + other fluid accelerations [m/s2]
     std::vector<double> phi0, phi1, phi2;
+    // Momentum that each grain has received from the fluid over the steps since this was last cleared [kg m/s]: what it
+    // has gained less what contacts and gravity gave it. Not kept when empty; fixed grains have none.
+    std::vector<Vec3> impulse;
     std::vector<double> memory; // whatever the fluid remembers of each grain (Basset history), memory_size numbers each
     std::size_t memory_size = 0;
 };

@@ -180,20 +180,33 @@ void stop_at_walls(SphFluid& f, double dt, std::int64_t step) {
 
 } // namespace
 
-void advance_fluid(SphFluid& f, double dt, std::int64_t step) {
+bool go_to_middle(SphFluid& f, double dt, std::int64_t step) {
     move_boundary(f, 0.5 * dt);
-    if (drift(f, 0.5 * dt) || f.boundary.travelled > 0.5 * f.clusters.skin) {
-        stop_at_walls(f, dt, step);
-        pass_open_sides(f);
-        renew_lists(f);
-    }
+    const bool leaves = drift(f, 0.5 * dt) || f.boundary.travelled > 0.5 * f.clusters.skin;
+    if (!leaves) return false;
+    stop_at_walls(f, dt, step);
+    pass_open_sides(f);
+    renew_lists(f);
+    return true;
+}
+
+void evaluate_middle(SphFluid& f, double dt, std::int64_t step) {
     fill_records(f, 0.5 * dt, dt);
     remember_rates(f);
     evaluate_terms(f);
     keep_mean_density(f);
     add_sources(f, (static_cast<double>(step) - 0.5) * dt);
+}
+
+void go_to_end(SphFluid& f, double dt, std::int64_t step) {
     correct(f, dt, step);
     move_boundary(f, 0.5 * dt);
+}
+
+void advance_fluid(SphFluid& f, double dt, std::int64_t step) {
+    go_to_middle(f, dt, step);
+    evaluate_middle(f, dt, step);
+    go_to_end(f, dt, step);
 }
 
 void start(SphFluid& f) {

@@ -20,6 +20,12 @@ namespace plumb {
 /// or its density changes by half.
 void advance_fluid(SphFluid& fluid, double dt, std::int64_t step);
 
+/// Its three parts, for schemes that do more in the middle. The first moves particles to the middle of the step and
+/// returns true when the lists were renewed; the second evaluates the rates there; the third uses them.
+bool go_to_middle(SphFluid& fluid, double dt, std::int64_t step);
+void evaluate_middle(SphFluid& fluid, double dt, std::int64_t step);
+void go_to_end(SphFluid& fluid, double dt, std::int64_t step);
+
 /// Builds lists and evaluates the rates of the present state, once, before the first step.
 void start(SphFluid& fluid);
 

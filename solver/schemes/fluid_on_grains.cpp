@@ -37,6 +37,20 @@ LocalFluid local_fluid(const FluidOnGrains& f, const Domain& domain, const Vec3&
     return local;
 }
 
+/// The fluid that grain k sees at the middle of the step.
+LocalFluid fluid_at_grain(const FluidOnGrains& f, const GrainSystem& system, std::size_t k, double dt) {
+    const Grains& g = system.grains;
+    if (!f.gathers) return local_fluid(f, system.domain, g.x[k] + (0.5 * dt) * g.v[k], system.time + 0.5 * dt);
+    const auto id = static_cast<std::size_t>(g.id[k]);
+    LocalFluid local;
+    local.u = f.at_grains.u[id] + (0.5 * dt) * f.at_grains.a[id];
+    local.acceleration = (f.at_grains.stress[id] - f.mean_gradient) / f.density;
+    local.eps = f.at_grains.eps[id];
+    local.density = f.density;
+    local.viscosity = f.viscosity;
+    return local;
+}
+
 /// Carries the history of one grain over the step that has just ended, and returns the force of the coming one that
 /// does not depend on its new velocity [N].
 Vec3 history_drive(const BassetKernel& kernel, double coefficient, std::span<double> memory, const Vec3& slip,
@@ -87,28 +101,33 @@ OneForcing forcing_of_grain(FluidOnGrains& f, const GrainSystem& system, const B
     const Grains& g = system.grains;
     const double d = 2.0 * g.radius[k], mobility = g.mobility[k];
     const Vec3 v = g.v[k];
-    const LocalFluid local = local_fluid(f, system.domain, g.x[k] + (0.5 * dt) * v, system.time + 0.5 * dt);
+    const LocalFluid local = fluid_at_grain(f, system, k, dt);
+    // Where grains of mass load times that of the fluid around drag it along, the slip w = v - u obeys
+    //     dw/dt = g - a - (1 + load) beta w,    and v = c + w/(1 + load)
+    // with the velocity c of both together, which drag does not change: the grain relaxes (1 + load) times as fast,
+    // towards c.
+    const double load = f.gathers ? f.at_grains.load[static_cast<std::size_t>(g.id[k])] : 0.0, both = 1.0 + load;
     OneForcing one;
-    one.u = local.u;
     one.eps = local.eps;
     const Vec3 history = history_of_grain(f, system, kernel, k, local, dt);
     const auto rate = [&](double slip) {
-        return mobility * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip);
+        return both * mobility * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, both * slip);
     };
     // Lift depends on the velocity: a first pass at the start of the step finds the velocity at its middle.
     LocalGrain grain{d, v};
     for (int pass = 0; pass < (f.forces.empty() ? 1 : 2); ++pass) {
         one.other = mobility * (other_forces(f, local, grain, system.domain.gravity) + history);
         const Vec3 acceleration = g.a[k] + one.other;
+        one.u = (local.u + load * (v + (0.5 * dt) * acceleration)) / both;
         std::visit(
             [&](const auto& exchange) {
-                one.rate = mid_step_rate(exchange, rate, v - local.u, acceleration, dt);
+                one.rate = mid_step_rate(exchange, rate, v - one.u, acceleration, dt);
                 const StepWeights half = exchange(0.5 * one.rate * dt);
-                grain.velocity = local.u + half.phi0 * (v - local.u) + (0.5 * dt * half.phi1) * acceleration;
+                grain.velocity = one.u + half.phi0 * (v - one.u) + (0.5 * dt * half.phi1) * acceleration;
             },
             f.exchange);
     }
-    one.re = f.density * d * local.eps * (grain.velocity - local.u).norm() / f.viscosity;
+    one.re = f.density * d * local.eps * both * (grain.velocity - one.u).norm() / f.viscosity;
     return one;
 }
 
@@ -141,12 +160,15 @@ void share_in_blocks(const GrainSystem& system, std::vector<OneForcing>& all) {
 
 /// Step weights and drive of grain k, and the drag and other forces it will feel on average.
 void write_forcing(FluidOnGrains& f, const GrainSystem& system, std::size_t k, const OneForcing& own,
-                   const OneForcing& shared, double dt) {
+                   const OneForcing& shared, double dt, std::int64_t parts) {
     const Grains& g = system.grains;
-    const StepWeights w = std::visit([&](const auto& e) { return e(shared.rate * dt); }, f.exchange);
-    f.forcing.phi0[k] = w.phi0;
-    f.forcing.phi1[k] = w.phi1;
-    f.forcing.phi2[k] = w.phi2;
+    const auto weights = [&](double seconds) {
+        return std::visit([&](const auto& e) { return e(shared.rate * seconds); }, f.exchange);
+    };
+    const StepWeights w = weights(dt), part = parts == 1 ? w : weights(dt / static_cast<double>(parts));
+    f.forcing.phi0[k] = part.phi0;
+    f.forcing.phi1[k] = part.phi1;
+    f.forcing.phi2[k] = part.phi2;
     f.forcing.drive[k] = shared.other + shared.rate * shared.u;
     const Vec3 mean_velocity = w.phi1 * g.v[k] + (dt * w.phi2) * (g.a[k] + f.forcing.drive[k]);
     const auto id = static_cast<std::size_t>(g.id[k]);
@@ -164,7 +186,7 @@ OneForcing write_fixed(FluidOnGrains& f, const GrainSystem& system, const Basset
     f.forcing.phi2[k] = 0.5;
     f.forcing.drive[k].setZero();
     const double d = 2.0 * g.radius[k];
-    const LocalFluid local = local_fluid(f, system.domain, g.x[k] + (0.5 * dt) * g.v[k], system.time + 0.5 * dt);
+    const LocalFluid local = fluid_at_grain(f, system, k, dt);
     const Vec3 slip = local.u - g.v[k];
     const auto id = static_cast<std::size_t>(g.id[k]);
     f.last_drag[id] = drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip.norm()) * slip;
@@ -187,39 +209,36 @@ void count_range(FluidOnGrains& f, const std::vector<OneForcing>& all) {
 
 } // namespace
 
-FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling) {
-    fluid.choice("method", {"prescribed"});
-    coupling.choice("direction", {"one_way"});
-    FluidOnGrains f{fluid.number("density", positive),
-                    fluid.number("viscosity", positive),
-                    make_family<PrescribedFlow>(fluid.law("flow")),
-                    coupling.has("porosity") ? make_family<PrescribedPorosity>(coupling.law("porosity"))
-                                             : PrescribedPorosity{},
-                    make_family<DragLaw>(coupling.law("drag")),
-                    {},
-                    std::nullopt,
-                    make_family<Exchange>(coupling.law("exchange")),
-                    std::nullopt,
-                    {},
-                    {},
-                    {},
-                    {}};
+void read_coupling_laws(Table& coupling, FluidOnGrains& f) {
+    f.drag = make_family<DragLaw>(coupling.law("drag"));
+    f.exchange = make_family<Exchange>(coupling.law("exchange"));
     std::set<std::string> seen;
     for (const std::string& name : coupling.texts("forces")) {
         if (!seen.insert(name).second) coupling.fail("forces", fmt::format("\"{}\" is named twice", name));
-        if (name == "basset")
+        if (name == "basset") {
             f.history = make_family<HistoryForce>(coupling.law("basset"));
-        else {
-            const std::vector<LawEntry> known = law_entries<OtherForce>();
-            if (std::none_of(known.begin(), known.end(), [&](const LawEntry& law) { return law.name == name; })) {
-                std::string names = "\"basset\"";
-                for (const LawEntry& law : known) names += fmt::format(", \"{}\"", law.name);
-                coupling.fail("forces", fmt::format("\"{}\" is not one of {}", name, names));
-            }
-            f.forces.push_back(make_family<OtherForce>(
-                Table(toml::table{{"law", name}}, coupling.path() + ".forces", coupling.file())));
+            continue;
         }
+        const std::vector<LawEntry> known = law_entries<OtherForce>();
+        if (std::none_of(known.begin(), known.end(), [&](const LawEntry& law) { return law.name == name; })) {
+            std::string names = "\"basset\"";
+            for (const LawEntry& law : known) names += fmt::format(", \"{}\"", law.name);
+            coupling.fail("forces", fmt::format("\"{}\" is not one of {}", name, names));
+        }
+        f.forces.push_back(
+            make_family<OtherForce>(Table(toml::table{{"law", name}}, coupling.path() + ".forces", coupling.file())));
     }
+}
+
+FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling) {
+    fluid.choice("method", {"prescribed"});
+    coupling.choice("direction", {"one_way"});
+    FluidOnGrains f;
+    f.density = fluid.number("density", positive);
+    f.viscosity = fluid.number("viscosity", positive);
+    f.flow = make_family<PrescribedFlow>(fluid.law("flow"));
+    if (coupling.has("porosity")) f.porosity = make_family<PrescribedPorosity>(coupling.law("porosity"));
+    read_coupling_laws(coupling, f);
     return f;
 }
 
@@ -239,7 +258,20 @@ void set_inertia(FluidOnGrains& fluid, GrainSystem& system, double dt) {
     }
 }
 
-void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt) {
+Vec3 force_from_outside(const FluidOnGrains& f, double diameter, const Vec3& gravity) {
+    Vec3 force = Vec3::Zero();
+    for (const OtherForce& law : f.forces) {
+        if (const auto* buoyancy = std::get_if<Buoyancy>(&law)) {
+            LocalFluid fluid;
+            fluid.density = f.density;
+            force += (*buoyancy)(fluid, {diameter, Vec3::Zero()}, gravity);
+        }
+        if (std::holds_alternative<PressureGradient>(law)) force -= sphere_volume(diameter) * f.mean_gradient;
+    }
+    return force;
+}
+
+void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt, std::int64_t parts) {
     const Grains& g = system.grains;
     const std::size_t n = g.size();
     const std::optional<BassetKernel>& kernel = fluid.kernel;
@@ -264,7 +296,7 @@ void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt) {
     }
     const std::vector<OneForcing>& shared = shares ? of_blocks : own;
     parallel_for(n, [&](std::size_t k) {
-        if (g.mobility[k] != 0.0) write_forcing(fluid, system, k, own[k], shared[k], dt);
+        if (g.mobility[k] != 0.0) write_forcing(fluid, system, k, own[k], shared[k], dt, parts);
     });
     count_range(fluid, own);
 }

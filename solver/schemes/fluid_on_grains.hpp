@@ -8,6 +8,7 @@
 #include "coupling/other_forces.hpp"
 #include "coupling/prescribed_flows.hpp"
 #include "coupling/prescribed_porosity.hpp"
+#include "coupling/weights.hpp"
 #include "dem/advance_grains.hpp"
 
 #include <optional>
@@ -30,15 +31,21 @@ struct FluidOnGrains {
     std::vector<OtherForce> forces;
     std::optional<HistoryForce> history;
     Exchange exchange;
+    bool gathers = false;              // the fluid at the grains is gathered from a computed one, not given
+    Vec3 mean_gradient = Vec3::Zero(); // of a pressure that drives a computed fluid and its grains alike [Pa/m]
 
     std::optional<BassetKernel> kernel; // of `history` for the step in use: set by set_inertia
 
     // what changes in time
+    GatheredFluid at_grains;            // of the present step
     FluidForcing forcing;               // by present order
     std::vector<Vec3> last_drag;        // mean drag of the last step [N], by id
     std::vector<Vec3> last_fluid_force; // mean of all forces of the fluid in the last step [N], by id
     RangeUse range_use;
 };
+
+/// The laws of the [coupling] table: drag, forces, exchange.
+void read_coupling_laws(Table& coupling, FluidOnGrains& fluid);
 
 /// Reads the [fluid] table with method "prescribed" and the [coupling] table.
 FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling);
@@ -47,8 +54,12 @@ FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling);
 /// acts like one in steps of `dt`. Needed before the first step and after grains have been added, or when dt changes.
 void set_inertia(FluidOnGrains& fluid, GrainSystem& system, double dt);
 
-/// Drive and step weights of all grains for the step of `dt` that starts now.
-void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt);
+/// Drive and step weights of all grains for the step of `dt` that starts now, which they take in `parts`.
+void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt, std::int64_t parts = 1);
+
+/// Share of the forces on a grain of diameter d [m] that no fluid of the scene exerts: buoyancy in a hydrostatic
+/// pressure and the mean gradient [N].
+Vec3 force_from_outside(const FluidOnGrains& fluid, double diameter, const Vec3& gravity);
 
 /// After the step: completes last_fluid_force, whose inertial part depends on the new velocities.
 void complete_fluid_forces(FluidOnGrains& fluid, const GrainSystem& system, double dt);

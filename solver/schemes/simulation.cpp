@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "dem/advance_grains.hpp"
 #include "dem/arrange.hpp"
+#include "schemes/coupled_scene.hpp"
 #include "schemes/sph_scene.hpp"
 
 #include <fmt/format.h>
@@ -146,10 +147,8 @@ bool is_sph(Table& root) {
     return fluid.has("method") && fluid.choice("method", {"prescribed", "sph"}) == "sph";
 }
 
-/// A scene of smoothed particles alone.
+/// Smoothed particles, without what grains there may be.
 void make_sph(Table& root, Simulation& s) {
-    for (const char* key : {"grains", "injector", "contact", "coupling"})
-        if (root.has(key)) root.fail(key, "does not go with fluid.method = \"sph\" yet");
     Table fluid = root.table("fluid");
     std::vector<Table> wall_tables = root.tables("wall");
     std::vector<Table> inlets = root.tables("inlet"), outlets = root.tables("outlet");
@@ -158,8 +157,35 @@ void make_sph(Table& root, Simulation& s) {
     check_periodic_sides(s.grains.domain, s.sph->clusters.reach + s.sph->clusters.skin, root.file());
     Table time = root.table("time");
     s.sph->memory = time.choice("integrator", {"midpoint", "damped_midpoint"}) == "midpoint" ? 0.0 : 0.5;
+}
+
+/// A scene of smoothed particles alone.
+void make_sph_alone(Table& root, Simulation& s) {
+    for (const char* key : {"injector", "contact", "coupling"})
+        if (root.has(key)) root.fail(key, "there are no [grains] in this scene");
+    make_sph(root, s);
+    Table time = root.table("time");
     s.timing = timing(time, fluid_limits(*s.sph), probe_intervals(root));
     start(*s.sph);
+}
+
+/// Smoothed particles and grains, each acting on the other.
+void make_coupled(Table& root, Simulation& s) {
+    make_sph(root, s);
+    read_grain_system(root, s.grains);
+    s.grains.integrator = Integrator::velocity_verlet;
+    Table coupling = root.table("coupling"), time = root.table("time");
+    s.coupling = read_coupling(coupling, *s.sph, s.grains);
+    s.fluid = fluid_on_grains(coupling, *s.sph, s.grains);
+    couple(*s.coupling, *s.sph, s.grains, coupling.choice("fluid_mass", {"displaced", "pure"}) == "displaced");
+    drive(coupling, *s.sph, *s.fluid, *s.coupling, s.grains);
+    s.timing = timing(time, fluid_limits(*s.sph), probe_intervals(root));
+    s.coupling->grain_steps = grain_steps(time, s.timing.dt, grain_limits(s.grains, s.sph->sound_speed * 0.1));
+    set_inertia(*s.fluid, s.grains, s.timing.dt);
+    start(*s.sph);
+    start(s.grains, s.timing.dt / static_cast<double>(s.coupling->grain_steps));
+    s.fluid->last_drag.assign(s.grains.grains.size(), Vec3::Zero());
+    s.fluid->last_fluid_force.assign(s.grains.grains.size(), Vec3::Zero());
 }
 
 } // namespace
@@ -169,7 +195,7 @@ Simulation make_simulation(Scene& scene) {
     Simulation s;
     s.grains.domain = read_domain(root.table("domain"));
     if (is_sph(root)) {
-        make_sph(root, s);
+        root.has("grains") ? make_coupled(root, s) : make_sph_alone(root, s);
         return s;
     }
     read_grain_system(root, s.grains);
@@ -196,6 +222,12 @@ Simulation make_simulation(Scene& scene) {
 
 void advance(Simulation& simulation, std::int64_t steps) {
     try {
+        if (simulation.coupling) {
+            for (std::int64_t k = 0; k < steps; ++k)
+                advance_coupled(*simulation.coupling, *simulation.sph, *simulation.fluid, simulation.grains,
+                                simulation.timing.dt, simulation.grains.step + 1);
+            return;
+        }
         if (simulation.sph) {
             GrainSystem& clock = simulation.grains;
             for (std::int64_t k = 0; k < steps; ++k) {

@@ -3,6 +3,7 @@
 
 #include "core/scene.hpp"
 #include "dem/grain_system.hpp"
+#include "schemes/advance_coupled.hpp"
 #include "schemes/advance_fluid.hpp"
 #include "schemes/fluid_on_grains.hpp"
 #include "schemes/stable_step.hpp"
@@ -14,8 +15,9 @@ namespace plumb {
 
 struct Simulation {
     GrainSystem grains;
-    std::optional<FluidOnGrains> fluid; // fluid.method = "prescribed"
+    std::optional<FluidOnGrains> fluid; // what grains feel of a fluid, if there is one
     std::optional<SphFluid> sph;        // fluid.method = "sph"
+    std::optional<Coupling> coupling;   // of the latter and grains
     Timing timing;                      // steps, outputs and limits, fixed for the whole run
 };
 

@@ -1,0 +1,72 @@
+// The matrix P between the particles a of the fluid and the grains j,
+//     P_aj = V_a W(|x_a - x_j|, h)/S_j,    S_j = sum_a V_a W(|x_a - x_j|, h),
+// whose columns sum to one: q P gathers a field of the fluid at the grains, f P^T spreads forces of the grains over the
+// fluid, so that the fluid loses what the grains receive, to round-off. Spreading and gathering may have kernels of
+// different width. P is not stored: lists of who is near whom are, and the sums evaluate the kernel eight times at
+// once, grains side by side when gathering and particles when spreading.
+#pragma once
+
+#include "core/vec.hpp"
+#include "sph/fluid.hpp"
+
+#include <vector>
+
+namespace plumb {
+
+/// Smoothing lengths [m] of the coupling's kernels.
+struct CouplingWidths {
+    double spread = 0.0, gather = 0.0, porosity = 0.0;
+    double greatest() const { return std::max({spread, gather, porosity}); }
+};
+
+/// Places and sizes of all grains, by id.
+struct GrainPlaces {
+    std::vector<Vec3> x;        // [m], inside the box or not
+    std::vector<double> volume; // [m3]
+    std::size_t size() const { return x.size(); }
+};
+
+struct Weights {
+    Kernel kernel;
+    CouplingWidths h;
+
+    // Grains in groups of eight, as the fluid's particles are. Of a record p_over_rho_sq holds the volume of the grain
+    // [m3]; u, v, w and volume what is spread, per S_j.
+    FluidClusters grains;
+    std::vector<std::int32_t> id;             // [slots] of the grain, -1 in the copies that fill a group
+    std::vector<Vec3> x_listed;               // by id: where the grains were when the lists were built, in the box [m]
+    NeighbourLists fluid_near, grains_near;   // records of the fluid near groups of grains, and the other way round
+    std::vector<std::int32_t> slot_of_record; // of the fluid's particle behind a record
+    Field<double> sum;                        // S_j of the spreading kernel, by slot
+};
+
+/// What the fluid is at the grains, by id.
+struct GatheredFluid {
+    std::vector<Vec3> u;      // velocity at the start of the step [m/s]
+    std::vector<Vec3> a;      // acceleration without the forces of the grains [m/s2]
+    std::vector<Vec3> stress; // -grad P + div tau [N/m3]
+    std::vector<double> eps;  // fluid fraction
+    std::vector<double> load; // mass of grains over mass of fluid, where the grain's force goes; 0 one way
+};
+
+/// Whether some grain has moved so far that the lists may miss a neighbour.
+bool outdated(const Weights& weights, const Domain& domain, const GrainPlaces& grains);
+
+/// New lists for the fluid's present lists and the grains' present places.
+void renew_weights(Weights& weights, const SphFluid& fluid, const GrainPlaces& grains);
+
+/// Puts the grains where they are now.
+void place_grains(Weights& weights, const Domain& domain, const GrainPlaces& grains);
+
+/// eps_a = 1 - sum_j V_j W(|x_a - x_j|, h) at every particle of the fluid; returns how many were below what the densest
+/// packing of equal spheres leaves, 1 - pi/sqrt 18, and were set to it.
+std::int64_t set_porosity(SphFluid& fluid, const Weights& weights);
+
+/// The fluid at the grains, and S_j. `mass` of all grains by id [kg], for `load`, if it is wanted.
+void gather(Weights& weights, const SphFluid& fluid, const std::vector<double>& mass, bool with_load,
+            GatheredFluid& at_grains);
+
+/// Adds the accelerations by forces on the fluid that are given by the id of the grain they belong to [N].
+void spread(SphFluid& fluid, Weights& weights, const std::vector<Vec3>& force);
+
+} // namespace plumb

@@ -1,0 +1,82 @@
+#include "schemes/advance_coupled.hpp"
+
+#include "core/parallel.hpp"
+#include "dem/advance_grains.hpp"
+#include "schemes/advance_fluid.hpp"
+
+namespace plumb {
+
+namespace {
+
+/// Where the grains will be `ahead` [s] from now, with their present velocities.
+void set_places(Coupling& c, const GrainSystem& system, double ahead) {
+    const Grains& g = system.grains;
+    c.places.x.resize(g.size());
+    c.places.volume.resize(g.size());
+    c.mass.resize(g.size());
+    parallel_for(g.size(), [&](std::size_t k) {
+        const auto id = static_cast<std::size_t>(g.id[k]);
+        c.places.x[id] = g.x[k] + ahead * g.v[k];
+        c.places.volume[id] = sphere_volume(2.0 * g.radius[k]);
+        c.mass[id] = g.mass[k];
+    });
+}
+
+/// Lists that hold for the places, and the porosity there.
+void find_porosity(Coupling& c, SphFluid& fluid, bool new_lists) {
+    if (new_lists || outdated(c.weights, fluid.domain, c.places)) renew_weights(c.weights, fluid, c.places);
+    place_grains(c.weights, fluid.domain, c.places);
+    c.clamped += set_porosity(fluid, c.weights);
+}
+
+/// What every grain has received per second over the step, by id, without what it received from the outside: buoyancy
+/// in a hydrostatic pressure that the scene leaves out, and a mean gradient [N].
+std::vector<Vec3> received_from_fluid(const FluidOnGrains& f, const GrainSystem& system, double dt) {
+    const Grains& g = system.grains;
+    std::vector<Vec3> force(g.size());
+    parallel_for(g.size(), [&](std::size_t k) {
+        const auto id = static_cast<std::size_t>(g.id[k]);
+        const bool alone =
+            g.mobility[k] > 0.0 && system.groups[static_cast<std::size_t>(g.group[k])].motion == Motion::free;
+        force[id] = (alone ? Vec3(f.forcing.impulse[k] / dt) : f.last_fluid_force[id]) -
+                    force_from_outside(f, 2.0 * g.radius[k], system.domain.gravity);
+    });
+    return force;
+}
+
+} // namespace
+
+void couple(Coupling& c, SphFluid& fluid, const GrainSystem& grains, bool displaced) {
+    fluid.share.assign(fluid.slots(), 1.0);
+    renew_lists(fluid);
+    set_places(c, grains, 0.0);
+    find_porosity(c, fluid, true);
+    if (displaced) fluid.share = fluid.eps;
+}
+
+void advance_coupled(Coupling& c, SphFluid& fluid, FluidOnGrains& at_grains, GrainSystem& grains, double dt,
+                     std::int64_t step) {
+    const bool new_lists = go_to_middle(fluid, dt, step);
+    set_places(c, grains, 0.5 * dt);
+    find_porosity(c, fluid, new_lists);
+    evaluate_middle(fluid, dt, step);
+    gather(c.weights, fluid, c.mass, c.two_way, at_grains.at_grains);
+
+    const std::int64_t n = c.grain_steps;
+    update_forcing(at_grains, grains, dt, n);
+    at_grains.forcing.impulse.assign(grains.grains.size(), Vec3::Zero());
+    grains.step = (step - 1) * n; // its own steps; the run counts the fluid's
+    advance_grains(grains, n, dt / static_cast<double>(n), &at_grains.forcing);
+    grains.step = step;
+    grains.time = dt * static_cast<double>(step);
+    complete_fluid_forces(at_grains, grains, dt);
+
+    if (c.two_way) {
+        std::vector<Vec3> force = received_from_fluid(at_grains, grains, dt);
+        for (Vec3& f : force) f = -f;
+        spread(fluid, c.weights, force);
+    }
+    go_to_end(fluid, dt, step);
+}
+
+} // namespace plumb

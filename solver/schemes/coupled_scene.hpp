@@ -1,0 +1,23 @@
+// What the [coupling] table says of smoothed particles and grains.
+#pragma once
+
+#include "core/table.hpp"
+#include "schemes/advance_coupled.hpp"
+#include "schemes/stable_step.hpp"
+
+namespace plumb {
+
+/// Kernels, their widths and the direction.
+Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem& grains);
+
+/// The forces of the fluid on the grains.
+FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid, const GrainSystem& grains);
+
+/// A mean pressure gradient, if the scene names one; after couple(), which sets the masses that it may have to balance.
+void drive(Table& coupling, SphFluid& fluid, FluidOnGrains& on_grains, const Coupling& state,
+           const GrainSystem& grains);
+
+/// Steps of the grains in one of the fluid: what their limits ask for, or `time.grain_step`.
+std::int64_t grain_steps(Table& time, double dt, const std::vector<StepLimit>& limits);
+
+} // namespace plumb
