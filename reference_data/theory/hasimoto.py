@@ -43,7 +43,7 @@ def settling_speed(force, mu, d, cell, terms=4):
     return force / (3.0 * math.pi * mu * d) * inverse_drag(volume_fraction(cell / d), terms)
 
 
-def image_velocity(scheme, cell, reach=32.0):
+def image_velocity(scheme, cell, reach=24.0):
     """mu/F times what the images (and the zero mean) add to the steady u_self of a lone grain in a cubic cell, 1/m."""
     fluid = self_disturbance.Fluid(1.0, 1.0)
     modes = self_disturbance.box_modes(scheme, (cell, cell, cell), reach=reach)

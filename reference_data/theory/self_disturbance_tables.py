@@ -1,7 +1,5 @@
 """Rows of the self-disturbance tables: the slides' grain in their three fluids, every kernel, suspensions and cubic cells."""
 
-import math
-
 import numpy as np
 from drag_laws.drag_laws import di_felice
 from theory import hasimoto, self_disturbance, self_disturbance_history, settling
@@ -106,13 +104,16 @@ def release_rows():
 
 
 def hasimoto_rows():
-    """(L/d, phi, K with 2, 4 and 6 terms, then the corrected two-way Stokes grain over its Stokes speed at h/d = 1, 2, 3)."""
+    """(L/d, phi, K with 2, 4 and 6 terms, then the corrected two-way Stokes grain over its Stokes speed at h/d = 1, 2, 3).
+
+    The latter only where the two supports, 4 h, fit into the cell.
+    """
     rows = []
     for cell in (2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 30.0, 40.0, 60.0, 100.0):
         fraction = hasimoto.volume_fraction(cell)
         series = [hasimoto.inverse_drag(fraction, terms) for terms in (2, 4, 6)]
         corrected = [
-            hasimoto.corrected_speed(self_disturbance.one_kernel(KERNEL, ratio), 1.0, cell) if 4.0 * ratio < cell else math.nan
+            hasimoto.corrected_speed(self_disturbance.one_kernel(KERNEL, ratio), 1.0, cell) if 4.0 * ratio < cell else ""
             for ratio in (1.0, 2.0, 3.0)
         ]
         rows.append((cell, fraction, *series, *corrected))
