@@ -119,6 +119,12 @@ TABLES = (
         8,
     ),
     Generated(
+        "self_disturbance/nonlinear.csv",
+        "fluid,h_over_d [1],re_h [1],u_full [1],u_slip [1],u_path [1]",
+        self_disturbance_tables.nonlinear_rows,
+        6,
+    ),
+    Generated(
         "self_disturbance/release.csv",
         "fluid,h_over_d [1],t_over_tau_p [1],nu_t_over_h2 [1],v_creeping [1],u_creeping [1],v_slip [1],u_slip [1]",
         self_disturbance_tables.release_rows,

@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parent
 sys.path.insert(0, str(ROOT))
 
 import tables  # noqa: E402
-from theory import hasimoto, self_disturbance, self_disturbance_history, settling, sph_operators  # noqa: E402
+from theory import hasimoto, nonlinear_wake, self_disturbance, self_disturbance_history, settling, sph_operators  # noqa: E402
 from theory.self_disturbance import Fluid, Modes, Scheme, Smoothing, one_kernel  # noqa: E402
 from theory.self_disturbance_tables import slides_grain  # noqa: E402
 
@@ -270,8 +270,8 @@ def test_stress_of_the_wake_takes_its_share_of_the_weight():
 
 
 def test_glycerol_water_from_a_second_calculation():
-    """u_self of a Stokes grain over its u_t, to the digits of a calculation made apart (kernel Wendland C2; the authors' public code,
-    rebuilt at physical viscosity, falls by 5.7, 8.6 and 0.8, 2.2, 3.1 % faster than a grain held still drifts)."""
+    """u_self of a Stokes grain over its u_t, to the digits of a calculation made apart (Wendland C2; the first two rows with Morris'
+    operator, the last two with the exact one)."""
     sphere = stokes_grain(1150.0)
     tau = settling.relaxation_time(sphere.rho_p, sphere.d, sphere.mu)
     for morris, ratio, multiples, percent in ((True, 3.0, (20, 40), (5.6, 8.6)), (True, 6.0, (20, 60, 100), (0.9, 2.3, 3.3)),
@@ -345,6 +345,32 @@ def test_box_tends_to_the_unbounded_fluid():
         periodic = self_disturbance.steady_velocity(modes, scheme, Fluid(1.0, 1.0), 1.0)
         gap.append(self_disturbance.steady_coefficient(scheme) - periodic)
     assert gap[0] / gap[1] == pytest.approx(2.0, rel=0.01) and gap[1] / gap[2] == pytest.approx(2.0, rel=0.003)
+
+
+def test_spectral_wake_without_advection_is_oseens_sum():
+    scheme, fluid, cell, slip, force = one_kernel(KERNEL, 1.0), Fluid(1.0, 1.0), 12.0, 1.5, 8.0
+    modes = self_disturbance.box_modes(scheme, (cell,) * 3, reach=12.0)
+    wake = nonlinear_wake.steady_wake(scheme, slip, force, cell, n=36, advection=False)
+    assert self_disturbance.steady_velocity(modes, scheme, fluid, force, slip + wake) == pytest.approx(wake, rel=1e-4)
+    slow = nonlinear_wake.steady_wake(scheme, 1e-3 * slip, 1e-3 * force, cell, n=36)  # its own advection gone
+    assert slow == pytest.approx(self_disturbance.steady_velocity(modes, scheme, fluid, 1e-3 * force), rel=1e-3)
+
+
+def test_full_equations_are_nearer_to_the_slip():
+    rows = tables.table("self_disturbance/nonlinear.csv")
+    off = {name: np.abs(rows[name] - rows["u_full"]) for name in ("u_slip", "u_path")}
+    assert np.all(off["u_slip"] < off["u_path"])
+    assert np.all(off["u_slip"] < rows["u_full"] ** 2)  # second order of the disturbance
+
+
+def test_advection_of_the_spectral_wake_does_no_work():
+    cube = nonlinear_wake.Cube(one_kernel(KERNEL, 1.0), 12.0, 24)
+    random = np.random.default_rng(1).standard_normal((3, 24, 24, 24))
+    u = np.stack([np.fft.rfftn(part) * cube.kept / 24**3 for part in random])
+    u = u - cube.k * (cube.k * u).sum(axis=0) / cube.square
+    u[:, 0, 0, 0] = 0.0
+    work = np.sum(cube.copies * (np.conj(u) * cube.advection(u)).real)
+    assert abs(work) < 1e-12 * np.sum(cube.copies * np.abs(u) ** 2) ** 1.5
 
 
 def test_second_moment_of_a_shell_is_faxens_term():

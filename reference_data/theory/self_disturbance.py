@@ -17,7 +17,8 @@ of the box is zero (the net force is balanced by a mean pressure gradient: zero 
 Frames. Velocities are those of the laboratory, where the fluid is at rest far away (unbounded) or in the mean (box), downwards
 positive. The grain moves at v, its slip is w = v - u_self. dX/dt in (1) is what carries the grain out of its own wake: v in
 strict linear theory ("path"); the slip, if one holds that the fluid about the grain carries the wake along ("slip", Oseen's
-equation in the frame of the nearby fluid); nothing in creeping flow ("still"). They differ at second order of the disturbance.
+equation in the frame of the nearby fluid); nothing in creeping flow ("still"). They differ at second order of the disturbance;
+the full equations (`nonlinear_wake`, steady) are nearer to "slip", which is the one to compare with.
 
 Left out: a floor or any wall (the images of a no-slip plane are not in (1)), the finite speed of sound, the self-advection
 of the wake, the noise of disordered particles, and the three effects of the grain's own volume, see `own_volume_fraction`.

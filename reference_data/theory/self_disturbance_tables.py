@@ -2,7 +2,7 @@
 
 import numpy as np
 from drag_laws.drag_laws import di_felice
-from theory import hasimoto, self_disturbance, self_disturbance_history, settling
+from theory import hasimoto, nonlinear_wake, self_disturbance, self_disturbance_history, settling
 from theory.released_sphere import Sphere
 from theory.sph_operators import KERNELS
 
@@ -80,10 +80,28 @@ def steady_rows():
     return rows
 
 
+def nonlinear_rows(cell=16.0):
+    """(fluid, h/d, Re_h on the slip, u_self/u_t of the full equations, of Oseen with the slip, with the path) in a cube of `cell` h."""
+    rows, scheme, fluid = [], self_disturbance.one_kernel(KERNEL, 1.0), self_disturbance.Fluid(1.0, 1.0)
+    modes = self_disturbance.box_modes(scheme, (cell,) * 3, reach=12.0)
+    for name in ("air", "water"):
+        sphere = slides_grain(name)
+        for ratio in (1.0, 2.0, 3.0, 6.0):
+            re_h = sphere.reynolds(sphere.terminal_speed()) * ratio
+            force = sphere.weight() * sphere.rho / sphere.mu**2
+            full = nonlinear_wake.steady_wake(scheme, re_h, force, cell)
+            slip = self_disturbance.steady_velocity(modes, scheme, fluid, force, re_h)
+            path = 0.0
+            for _ in range(60):
+                path = 0.5 * (path + self_disturbance.steady_velocity(modes, scheme, fluid, force, re_h + path))
+            rows.append((name, ratio, re_h, full / re_h, slip / re_h, path / re_h))
+    return rows
+
+
 def _released(sphere, ratio, times, moves):
     scheme = self_disturbance.one_kernel(KERNEL, ratio * sphere.d)
     fluid = self_disturbance.Fluid(sphere.rho, sphere.mu)
-    speed = 2.0 * sphere.terminal_speed() if moves != "still" else 0.0  # no disturbance here adds more than 0.6
+    speed = 1.01 * sum(self_disturbance.steady_settling(sphere, scheme)) if moves != "still" else 0.0  # never exceeded
     modes = self_disturbance.unbounded_modes(scheme, fluid, path=speed * times[-1], speed=speed)
     return self_disturbance_history.plain_settling(sphere, scheme, modes, times, moves)
 
