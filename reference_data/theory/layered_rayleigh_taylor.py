@@ -180,6 +180,7 @@ def form(k, fluid, layer, h_c, closure, depth, h=None):
     phi, rho = layer.fraction(s.z, h_c), fluid["rho"]
     if h is None:
         grains, pull = inertia_form(s, phi, k), s.gram(layer.slope(s.z, h_c), s.value, s.value).toarray()
+        pull -= layer.fraction(depth.height, h_c) * np.outer(s.surface, s.surface)  # grains that end at a free surface
     else:
         grains, pull = _gathered(depth, layer, k, h, h_c)
     return Form(
@@ -271,9 +272,11 @@ def rows():
 
 
 def edge_rows():
-    """(fluid, k, across, n of (2) with point kernels, with the scheme's kernels, with Morris' operator too)."""
+    """(fluid, k, across, n of (2) with point kernels, with the scheme's kernels, with Morris' operator too); not for air, whose
+    density is nowhere near that of the suspension."""
     layer, result = scene_layer(), []
-    for name, fluid in FLUIDS.items():
+    for name in ("water", "glycerol_water"):
+        fluid = FLUIDS[name]
         for k in scene.wave_numbers():
             point = edge_growth_rate(k, fluid, layer.phi, SHARP, SHARP)
             for across in ACROSS:

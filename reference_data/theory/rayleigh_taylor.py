@@ -19,6 +19,7 @@ The base state is taken at rest in the frame of the grains: it holds while the g
 
 import math
 
+import numpy as np
 from scipy.optimize import brentq
 
 from drag_laws.drag_laws import di_felice
@@ -109,6 +110,17 @@ def settling_slip(fluid, eps):
     """Superficial slip of a settling suspension, m/s."""
     rho, mu, d = fluid["rho"], fluid["mu"], GRAIN["d"]
     return hindered_re(archimedes(GRAIN["rho_p"], rho, d, mu), eps, 1) * mu / (rho * d)
+
+
+def lowest_grain(t, rates, settling_speed):
+    """Fall of the slides' lowest grain since the start, m, by linear theory: rates = n at k1 and at sqrt(2) k1, 1/s.
+
+    The lattice is displaced by -(d/8)(1 - cos k1 x)(1 - cos k1 y): two waves of k1 and their product, d/8 each, add up below the
+    lowest grain. Each grows like exp(n t) from the start; the time that motion from rest takes is left out, as on the slides.
+    """
+    t = np.asarray(t, float)
+    waves = 2.0 * np.expm1(rates[0] * t) + np.expm1(rates[1] * t)
+    return settling_speed * t + GRAIN["d"] / 8.0 * waves
 
 
 def rows():
