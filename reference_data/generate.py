@@ -105,7 +105,8 @@ TABLES = (
     ),
     Generated(
         "suspension_theory/smoothed_block.csv",
-        "fluid,eps_nominal [1],h_over_d [1],v_gathered [m/s],v_local [m/s],v_nominal [m/s],v_lattice [m/s]",
+        "fluid,eps_nominal [1],h_over_d [1],v_gathered [m/s],v_particle [m/s],v_local [m/s],v_nominal [m/s],"
+        "v_lattice [m/s]",
         smoothed_block.velocity_rows,
         8,
     ),

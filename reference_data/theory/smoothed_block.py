@@ -125,13 +125,15 @@ def porosity_rows():
 
 
 def velocity_rows():
-    """(fluid, nominal, h/d, v of the scheme, of the local balance, v at the nominal and at the lattice's porosity)."""
+    """(fluid, nominal, h/d, v of the scheme with gathering by h and by the particles' own h, v of the local balance, v at the
+    nominal and at the lattice's porosity)."""
     rows = []
     for name, fluid in FLUIDS.items():
         for nominal in NOMINAL:
             block = scene.lattice(nominal)
             plain = uniform_velocity(fluid, nominal), uniform_velocity(fluid, block.eps)
             for ratio in SMOOTHING:
-                both = [velocity(fluid, block, ratio * GRAIN["d"], exchange=kind) for kind in ("gathered", "local")]
-                rows.append((name, nominal, ratio, *both, *plain))
+                kinds = (("h", "gathered"), ("particle", "gathered"), ("h", "local"))
+                smoothed = [velocity(fluid, block, ratio * GRAIN["d"], *kind) for kind in kinds]
+                rows.append((name, nominal, ratio, *smoothed, *plain))
     return rows
