@@ -5,7 +5,8 @@
     generate.py --check    recompute and compare; exit 1 naming the first difference of each table
 
 Numbers agree to 1e-12 relative (elementary functions differ in the last bits between machines); tables made by a
-least-squares solution carry six digits, those made by quadrature or an eigenproblem eight, and agree to one unit of the last. Needs NumPy and SciPy.
+least-squares solution carry six digits, those made by quadrature or an eigenproblem eight, and agree to one unit of the last.
+Needs NumPy and SciPy.
 """
 
 import argparse

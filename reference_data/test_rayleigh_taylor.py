@@ -132,7 +132,8 @@ def test_equal_viscous_fluids_creep():
     assert n == pytest.approx(G * 0.2 * 1350.0 / (4 * k * 10.0), rel=2e-3)
 
 
-SMOOTHED = {  # a separate calculation to its digits: smoothed once, nominal layer 3.6 to 5.2 mm, mu_2 = mu; across 10, 20, 30, sharp
+# A separate calculation to its digits: smoothed once, nominal layer 3.6 to 5.2 mm, mu_2 = mu; across 10, 20, 30, sharp.
+SMOOTHED = {
     ("glycerol_water", 1): (18.2, 20.9, 21.7, 22.6),
     ("glycerol_water", 0): (20.3, 22.5, 23.1, 23.7),
     ("water", 1): (35.8, 40.8, 42.7, 45.2),
@@ -201,7 +202,8 @@ def test_kernels_slow_the_growth_and_a_weaker_operator_less():
     rates = table("suspension_theory/layered_growth_rate.csv")
     # in air the kernels smooth the inertia as much as the driving: the order is that of the liquids
     liquid = np.array([fluid != "air" for fluid in rates["fluid"]])
-    for above, below in (("n_layer", "n_once"), ("n_once", "n_gathered"), ("n_once", "n_once_inertia"), ("n_gathered", "n_gathered_inertia")):
+    ordered = (("n_layer", "n_once"), ("n_once", "n_gathered"), ("n_once", "n_once_inertia"), ("n_gathered", "n_gathered_inertia"))
+    for above, below in ordered:
         assert np.all(rates[below][liquid] < rates[above][liquid])
 
 

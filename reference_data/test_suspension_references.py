@@ -157,7 +157,8 @@ def test_forces_on_the_block_are_its_weight_and_the_fluid_gets_them_back():
 def test_block_against_the_nominal_velocity():
     """A separate calculation: 29 % too fast at h/d = 6, 8 % at 2, 90 % and more at nominal 0.6 (glycerol-water, to its digits)."""
     rows = table("suspension_theory/smoothed_block.csv")
-    over = {(f, n, r): v / u - 1 for f, n, r, v, u in zip(*(rows[c] for c in ("fluid", "eps_nominal", "h_over_d", "v_gathered", "v_nominal")))}
+    columns = (rows[name] for name in ("fluid", "eps_nominal", "h_over_d", "v_gathered", "v_nominal"))
+    over = {(f, n, r): v / u - 1 for f, n, r, v, u in zip(*columns)}
     assert over["glycerol_water", 0.8, 6.0] == pytest.approx(0.29, abs=0.01)
     assert over["glycerol_water", 0.8, 2.0] == pytest.approx(0.08, abs=0.005)
     assert all(over[fluid, 0.6, 6.0] > 0.9 for fluid in settling.FLUIDS)
@@ -246,14 +247,22 @@ def test_hindered_table_meets_the_shorter_one_and_both_conventions_differ_by_eps
     met = [v / known[f, e] for f, e, v in zip(wide["fluid"], wide["eps"], wide["v_mixture"]) if (f, e) in known]
     assert len(met) == 24
     np.testing.assert_allclose(met, 1.0, rtol=1e-12)
-    slow = np.array([f == "glycerol_water" for f in wide["fluid"]])  # drag linear: the ratio is eps
-    np.testing.assert_allclose((wide["v_mixture"] / wide["v_plain"])[slow], wide["eps"][slow], rtol=2e-3 + 0.01)
+    slow = np.array([f == "glycerol_water" for f in wide["fluid"]])
+    mixture, plain = wide["v_mixture"][slow], wide["v_plain"][slow]
+    # drag all but linear: the ratio is eps, but for Dallavalle's root of Re and 1e-3 of chi's change with Re
+    np.testing.assert_allclose(mixture / plain, wide["eps"][slow] * dallavalle_ratio(plain, mixture), rtol=2e-3)
+
+
+def dallavalle_ratio(first, second):
+    """C_D Re/24 at one speed over that at another, m/s, in glycerol-water."""
+    factor = [(4.8 + 0.63 * np.sqrt(GLYCEROL["rho"] * D * v / GLYCEROL["mu"])) ** 2 for v in (first, second)]
+    return factor[0] / factor[1]
 
 
 def test_di_felice_in_creeping_flow_is_almost_richardson_zaki():
-    """1 + chi = 4.699 at Re = 0.01 against 4.65: v_mixture/v_richardson_zaki = eps^0.05, plus what C_D Re has of Re^(1/2)."""
+    """1 + chi = 4.7 at Re -> 0 (4.699 at 0.01) against 4.65: v_mixture/v_richardson_zaki = eps^0.05 but for Dallavalle's root of Re."""
     wide = table("suspension_theory/hindered_settling.csv")
+    alone = table("settling_theory/single_grain.csv")["u_t_di_felice"][2]
     slow = np.array([f == "glycerol_water" for f in wide["fluid"]])
-    eps = wide["eps"][slow]
-    measured = (wide["v_mixture"] / wide["v_richardson_zaki"])[slow]
-    np.testing.assert_allclose(measured, eps**0.05, rtol=0.03)
+    eps, v = wide["eps"][slow], wide["v_mixture"][slow]
+    np.testing.assert_allclose(v / wide["v_richardson_zaki"][slow], eps**0.05 * dallavalle_ratio(alone, v), rtol=2e-3)

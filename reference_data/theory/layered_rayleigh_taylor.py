@@ -43,7 +43,8 @@ from scipy.optimize import brentq
 
 from . import sedimentation_scene as scene
 from .plane_kernel import KERNEL, plane_average, plane_share, wave_average
-from .rayleigh_taylor import EPS, following, growth_rate as sharp_growth_rate, hindered_relaxation_time, settling_slip, suspension_viscosity
+from .rayleigh_taylor import EPS, following, hindered_relaxation_time, settling_slip, suspension_viscosity
+from .rayleigh_taylor import growth_rate as sharp_growth_rate
 from .settling import FLUIDS, GRAIN, GRAVITY
 from .sph_operators import transform, viscosity_ratio
 
@@ -250,7 +251,7 @@ def scene_layer(nominal=EPS, block=scene.BLOCK):
 
 
 def rows():
-    """(fluid, mu_2 closure, k, across, h, sharp and deep, sharp layer, once, once with inertia, gathered, gathered with inertia)."""
+    """(fluid, mu_2 closure, k, across, h; rates: sharp and deep, sharp layer, once, gathered, the last two without and with inertia)."""
     layer, result = scene_layer(), []
     for name, fluid in FLUIDS.items():
         tau = hindered_relaxation_time(fluid, EPS, settling_slip(fluid, EPS))

@@ -13,7 +13,7 @@ the grains feel too): eps rho du/dt = eps rho G - n f_d, u the interstitial velo
 
     du/dt = G - a u - b u^2,    a + b u = n f_d/(eps rho u) = 18 nu (1 - eps) F/d^2                                   (2)
 
-With a = 150 nu (1 - eps)^2/(eps^2 d^2) and b = 1.75 (1 - eps)/(eps d) for Ergun. Riccati's equation from rest, s = sqrt(a^2 + 4 b G):
+with a = 150 nu (1 - eps)^2/(eps^2 d^2) and b = 1.75 (1 - eps)/(eps d) for Ergun. From rest, with s = sqrt(a^2 + 4 b G):
 
     u = 2 G (1 - e^(-s t))/[s (1 + e^(-s t)) + a (1 - e^(-s t))]                                                       (3)
 
@@ -120,7 +120,8 @@ def bed_rows():
             for re in BED_RE:
                 scaled = float(18.0 * (1.0 - eps) * law(eps, re) / eps)  # equation (1) with mu = d = u_s = 1
                 ergun = 150.0 * (1.0 - eps) ** 2 / eps**3 + 1.75 * (1.0 - eps) * re / eps**3
-                rows.append((name, eps, re, scaled, scaled / ergun, float(darcy_permeability(law, eps, 1.0)), kozeny_carman(eps, 1.0)))
+                permeabilities = float(darcy_permeability(law, eps, 1.0)), kozeny_carman(eps, 1.0)
+                rows.append((name, eps, re, scaled, scaled / ergun, *permeabilities))
     return rows
 
 
