@@ -4,8 +4,8 @@
     generate.py            write every table
     generate.py --check    recompute and compare; exit 1 naming the first difference of each table
 
-Numbers agree to 1e-12 relative (elementary functions differ in the last bits between machines); tables made by a least-squares
-solution carry six digits, those of the self-disturbance (quadrature, time steps) eight, and agree to one unit of the last.
+Numbers agree to 1e-12 relative (elementary functions differ in the last bits between machines); tables made by a
+least-squares solution carry six digits, those made by quadrature or an eigenproblem eight, and agree to one unit of the last.
 Needs NumPy and SciPy.
 """
 
@@ -19,7 +19,8 @@ from typing import Callable, NamedTuple
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from drag_laws.drag_laws import LAWS, in_range  # noqa: E402
-from theory import cylinder_arrays, rayleigh_taylor, self_disturbance_tables, settling  # noqa: E402
+from theory import cylinder_arrays, layered_rayleigh_taylor, packed_beds, rayleigh_taylor  # noqa: E402
+from theory import self_disturbance_tables, settling, smoothed_block  # noqa: E402
 
 ROOT = Path(__file__).resolve().parent
 
@@ -135,6 +136,48 @@ TABLES = (
         "cell_over_d [1],solid_fraction [1],k_point [1],k_hasimoto [1],k_sangani_acrivos [1],"
         "corrected_h1 [1],corrected_h2 [1],corrected_h3 [1]",
         self_disturbance_tables.hasimoto_rows,
+        8,
+    ),
+    Generated(
+        "suspension_theory/hindered_settling.csv",
+        "fluid,eps [1],v_mixture [m/s],v_plain [m/s],v_richardson_zaki [m/s],exponent [1]",
+        packed_beds.hindered_rows,
+    ),
+    Generated(
+        "suspension_theory/packed_bed.csv",
+        "law,eps [1],re [1],gradient [1],over_ergun [1],permeability [1],kozeny_carman [1]",
+        packed_beds.bed_rows,
+    ),
+    Generated(
+        "suspension_theory/smoothed_porosity.csv",
+        "eps_nominal [1],h_over_d [1],columns [1],layers [1],spacing [m],eps_lattice [1],eps_h [1],eps_h_c [1],eps_particle [1]",
+        smoothed_block.porosity_rows,
+        8,
+    ),
+    Generated(
+        "suspension_theory/smoothed_block.csv",
+        "fluid,eps_nominal [1],h_over_d [1],v_gathered [m/s],v_particle [m/s],v_local [m/s],v_nominal [m/s],"
+        "v_lattice [m/s]",
+        smoothed_block.velocity_rows,
+        8,
+    ),
+    Generated(
+        "suspension_theory/dusty_growth_rate.csv",
+        "fluid,viscosity_above,k [1/m],tau_of,tau [s],n_gas [1/s],n_liquid [1/s]",
+        rayleigh_taylor.dusty_rows,
+        8,
+    ),
+    Generated(
+        "suspension_theory/layered_growth_rate.csv",
+        "fluid,viscosity_above,k [1/m],across [1],h [m],n_deep [1/s],n_layer [1/s],n_once [1/s],n_once_inertia [1/s],"
+        "n_gathered [1/s],n_gathered_inertia [1/s]",
+        layered_rayleigh_taylor.rows,
+        8,
+    ),
+    Generated(
+        "suspension_theory/edge_growth_rate.csv",
+        "fluid,k [1/m],across [1],n_point [1/s],n_kernels [1/s],n_kernels_morris [1/s]",
+        layered_rayleigh_taylor.edge_rows,
         8,
     ),
 )
