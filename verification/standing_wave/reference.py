@@ -191,6 +191,6 @@ def figures(runs):
     swing.set_ylabel("mean of 2 u sin kx, over a omega")
     damping.set_xlabel("spacing [m]")
     damping.set_ylabel("damping/(nu k^2)")
-    damping.legend(fontsize="x-small")
+    damping.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return [("wave", figure, "The swing at the finest spacing (left). Fitted damping (points) and the exact one of the fluid whose surface "
              "each viscous term makes (dashed): no stress with `monaghan_gingold`, no gradient with `morris`.")]
