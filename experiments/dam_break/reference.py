@@ -64,11 +64,13 @@ def height(column, t):
 
 
 def speed_of_front(column, least=2.0, most=4.0):
-    """dZ/dT by least squares between Z = least and most, and its standard error: free of the zero of time."""
+    """dZ/dT by least squares between Z = least and most, free of the zero of time, and its standard uncertainty: that of the rows
+    as the table states it, taken as independent. How well the rows fit a line says less: what they share does not scatter."""
     rows = tables.table(f"martin_moyce_1952/{COLUMNS[column.ratio]}")
     keep = (rows["Z"] >= least) & (rows["Z"] <= most)
-    (slope, _), covariance = np.polyfit(rows["T"][keep], rows["Z"][keep], 1, cov=True)
-    return {"value": float(slope), "uncertainty": float(math.sqrt(covariance[0, 0]))}
+    slope, _ = np.polyfit(rows["T"][keep], rows["Z"][keep], 1)
+    spread = np.linalg.norm(rows["T"][keep] - rows["T"][keep].mean())
+    return {"value": float(slope), "uncertainty": float(math.hypot(PLACE_ERROR, slope * TIME_ERROR) / spread)}
 
 
 def ritter_front(column, t):

@@ -1,67 +1,19 @@
-// Scenes with fluid.method = "sph": what they mean, what is refused, their step limits, initial state and probes.
+// Scenes with fluid.method = "sph": what they mean, what is refused, their step limits and initial state.
 #include "run/probes.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/sph_scene.hpp"
 #include "sph/arrange_fluid.hpp"
 #include "sph/initial_fields.hpp"
 
-#include "fluid_fixtures.hpp"
+#include "sph_scene_fixtures.hpp"
 
 #include <algorithm>
-#include <map>
-#include <string>
 
 using namespace plumb;
 using namespace plumb::fixture;
+using namespace plumb::fixture::sph_scene;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
-using Keys = std::map<std::string, std::string>; // value as TOML; an empty one takes the key away
-
-/// 20 x 16 (x 12) particles of water, h = 0.075 m, c = 20 m/s, nu = 1e-4 m2/s.
-std::string scene_text(int dimensions, const Keys& fluid_changes = {}, const Keys& domain_changes = {},
-                       const std::string& more = "") {
-    Keys domain =
-        dimensions == 2
-            ? Keys{{"size", "[1.0, 0.8]"}, {"periodic", "[true, true]"}, {"gravity", "[0.0, -9.81]"}}
-            : Keys{{"size", "[1.0, 0.8, 0.6]"}, {"periodic", "[true, true, true]"}, {"gravity", "[0.0, 0.0, -9.81]"}};
-    Keys fluid{{"method", "\"sph\""},          {"density", "1000.0"},
-               {"viscosity", "0.1"},           {"spacing", "0.05"},
-               {"smoothing", "1.5"},           {"sound_speed", "20.0"},
-               {"kernel", "\"wendland_c2\""},  {"equation_of_state", "\"tait\""},
-               {"viscous_term", "\"morris\""}, {"pressure", "\"full\""},
-               {"arrange", "\"lattice\""},     {"initial", "\"rest\""},
-               {"operators", "\"plain\""}};
-    for (const auto& [key, value] : domain_changes) domain[key] = value;
-    for (const auto& [key, value] : fluid_changes) fluid[key] = value;
-    std::string text = "[domain]\n";
-    const auto write = [&](const Keys& keys) {
-        for (const auto& [key, value] : keys)
-            if (!value.empty()) text.append(key).append(" = ").append(value).append("\n");
-    };
-    write(domain);
-    text += "[fluid]\n";
-    write(fluid);
-    return text + "[time]\nend = 1e-2\noutput_interval = 1e-3\nintegrator = \"midpoint\"\nstep = 1e-4\n" + more;
-}
-
-/// A scene read to its end, probes included.
-struct Bench {
-    Scene scene;
-    Simulation simulation;
-    std::vector<Probe> probes;
-    explicit Bench(const std::string& text)
-        : scene(scene_from_text(text, "scene.toml", "/")), simulation(make_simulation(scene)),
-          probes(read_probes(scene, simulation)) {
-        scene.root.finish();
-    }
-    SphFluid& fluid() { return simulation.sph.value(); }
-};
-
-void expect_refused(const std::string& text, std::initializer_list<std::string_view> parts) {
-    expect_error([&] { Bench bench(text); }, parts);
-}
 
 double seconds_of(const std::vector<StepLimit>& limits, std::string_view name) {
     const auto found = std::find_if(limits.begin(), limits.end(), [&](const StepLimit& l) { return l.name == name; });
@@ -70,25 +22,6 @@ double seconds_of(const std::vector<StepLimit>& limits, std::string_view name) {
 
 Vec3 position(const SphFluid& f, std::int32_t id) {
     return entry(f, f.x, slots_by_id(f)[static_cast<std::size_t>(id)]);
-}
-
-/// Value of one probe at the start of a scene after change(fluid).
-template <class Change> double probed(const std::string& probe, const Keys& fluid, int dimensions, Change&& change) {
-    Bench bench(scene_text(dimensions, fluid, {}, "[[probe]]\nname = \"p\"\n" + probe));
-    change(bench.fluid());
-    record(bench.probes, bench.simulation);
-    return bench.probes.front().value.front();
-}
-double probed(const std::string& probe, const Keys& fluid = {}, int dimensions = 2) {
-    return probed(probe, fluid, dimensions, [](SphFluid&) {});
-}
-
-/// Gives one particle a velocity; its copies, if it has any, follow as in a run.
-void push(SphFluid& f, std::int32_t id, const Vec3& v) {
-    std::size_t k = slots_by_id(f)[static_cast<std::size_t>(id)];
-    do {
-        for (int c = 0; c < f.dimensions; ++c) f.v[static_cast<std::size_t>(c)][k] = v[c];
-    } while (++k < f.slots() && f.id[k] < 0);
 }
 
 } // namespace
@@ -368,44 +301,4 @@ TEST(SphScene, PulseByFormula) {
             EXPECT_NEAR(pressure(f, f.rho[k]), 1000.0 * 20.0 * u, 1e-8);
         }
     }
-}
-
-// Probes that count copies, forget a factor or a component, or take the wrong axis.
-TEST(SphScene, ProbesByHand) {
-    const auto kick = [](SphFluid& f) { // particle 5: x = 0.275, y = 0.025, in space z = 0.025
-        push(f, 5, f.dimensions == 2 ? Vec3(3.0, 4.0, 0.0) : Vec3(3.0, 4.0, 12.0));
-    };
-    EXPECT_NEAR(probed("quantity = \"fluid_kinetic_energy\"", {}, 2, kick), 12.5 / 320.0, 1e-15);
-    EXPECT_NEAR(probed("quantity = \"fluid_kinetic_energy\"", {}, 3, kick), 84.5 / 3840.0, 1e-15);
-    EXPECT_EQ(probed("quantity = \"fluid_greatest_speed\"", {}, 2, kick), 5.0);
-    EXPECT_EQ(probed("quantity = \"fluid_greatest_speed\"", {}, 3, kick), 13.0);
-    EXPECT_NEAR(probed("quantity = \"fluid_mean_velocity\"\naxis = \"y\"", {}, 2, kick), 4.0 / 320.0, 1e-15);
-    EXPECT_NEAR(probed("quantity = \"fluid_mean_velocity\"\naxis = \"z\"", {}, 3, kick), 12.0 / 3840.0, 1e-15);
-    const std::string wave = "quantity = \"fluid_velocity_wave\"\nwaves = 3\naxis = \"y\"\nalong = \"x\"\nshape = ";
-    EXPECT_NEAR(probed(wave + "\"sin\"", {}, 2, kick), 8.0 / 320.0 * std::sin(6.0 * pi * 0.275), 1e-15);
-    EXPECT_NEAR(probed(wave + "\"cos\"", {}, 2, kick), 8.0 / 320.0 * std::cos(6.0 * pi * 0.275), 1e-15);
-}
-
-// The wave's amplitude is not that of the wave: sums of sin^2 over a lattice are exactly n/2.
-TEST(SphScene, WaveProbeFindsTheAmplitude) {
-    for (const int d : {2, 3}) {
-        const Keys wave{{"initial", "{law = \"shear_wave\", speed = 0.3, waves = 2}"}};
-        const std::string probe = "quantity = \"fluid_velocity_wave\"\naxis = \"x\"\nalong = \"y\"\n";
-        EXPECT_NEAR(probed(probe + "waves = 2\nshape = \"sin\"", wave, d), 0.3, 1e-13);
-        EXPECT_NEAR(probed(probe + "waves = 2\nshape = \"cos\"", wave, d), 0.0, 1e-13);
-        EXPECT_NEAR(probed(probe + "waves = 1\nshape = \"sin\"", wave, d), 0.0, 1e-13);
-        EXPECT_NEAR(probed("quantity = \"fluid_kinetic_energy\"", wave, d), 0.25 * 0.09, 1e-13);
-        EXPECT_NEAR(probed("quantity = \"fluid_mean_velocity\"\naxis = \"x\"", wave, d), 0.0, 1e-13);
-    }
-}
-
-// A third component read in the plane, where it does not exist.
-TEST(SphScene, BadProbesAreInputErrors) {
-    const std::string head = "[[probe]]\nname = \"p\"\nquantity = ";
-    const std::string wave = head + "\"fluid_velocity_wave\"\nwaves = 1\nshape = \"sin\"\n";
-    expect_refused(scene_text(2, {}, {}, head + "\"fluid_mean_velocity\"\naxis = \"z\""), {"probe[0].axis", "z"});
-    expect_refused(scene_text(2, {}, {}, wave + "axis = \"z\"\nalong = \"x\""), {"probe[0].axis", "z"});
-    expect_refused(scene_text(2, {}, {}, wave + "axis = \"x\"\nalong = \"z\""), {"probe[0].along", "z"});
-    expect_refused(scene_text(3, {}, {}, wave + "axis = \"x\""), {"probe[0].along: missing"});
-    expect_refused(scene_text(3, {}, {}, head + "\"fluid_mean_velocity\"\naxis = \"w\""), {"probe[0].axis", "w"});
 }

@@ -21,6 +21,7 @@ FILES = {"u": ("u_on_vertical_line.csv", "y"), "v": ("v_on_horizontal_line.csv",
 # (component, Re, place): not comparable. The first is known; the second stands out by 1.1e-3 against neighbours right to 1e-4.
 MISPRINTS = {("v", 400, 0.9063), ("u", 100, 0.0703)}
 FIT_RADIUS = 3.0  # spacings; some 28 particles inside, 14 beside a wall, for the six coefficients of a parabola
+VOID = 2.0  # in place of u/U and v/U, more than U away from everything in the cavity but the lid
 NODES = 33  # places of u_vertical and v_horizontal: j/32, walls included
 
 # Botella & Peyret (1998), Computers & Fluids 27, 421, spectral, lid +x; values as quoted by several public codes: (value, place).
@@ -99,12 +100,23 @@ def reference(quantity, scene, t):
 
 
 def at_places(scene, fluid, component, s):
-    """u (v) over U at the places s [n] over L of the vertical (horizontal) centre line, by local_fit from the particles."""
+    """u (v) over U at the places s [n] over L of the vertical (horizontal) centre line, by local_fit from the particles.
+
+    A place in a void, with too few particles to fit, has no velocity: what is there is not the flow, and VOID stands for it.
+    """
     length, spacing = scene["domain"]["size"][0], scene["fluid"]["spacing"]
     middle = np.full(len(s), 0.5)
     places = np.stack((middle, s) if component == "u" else (s, middle), axis=1) * length
-    column = "uv".index(component)
-    return fitted(fluid["x"], np.asarray(fluid["v"])[:, column], places, FIT_RADIUS * spacing) / lid_speed(scene)
+    values = np.asarray(fluid["v"])[:, "uv".index(component)] / lid_speed(scene)
+    return np.array([fitted_or_void(fluid["x"], values, place, FIT_RADIUS * spacing) for place in places])
+
+
+def fitted_or_void(x, values, place, radius):
+    """local_fit at one place, VOID where it has too few particles."""
+    try:
+        return fitted(x, values, place[None, :], radius)[0]
+    except ValueError:
+        return VOID
 
 
 def last_third(run):
@@ -124,9 +136,12 @@ def nodes_of(run, k):
 
 
 def drift(run):
-    """Greatest change of a node's value, over U, in any tenth of the run that ends in its last third."""
+    """Greatest change of an inner node's value, over U, in any tenth of the run that ends in its last third.
+
+    Nodes on the walls are left out: there the fluid's velocity is given, and the parabola extrapolates from one side.
+    """
     tenth = len(run.snapshot_files()) // 10
-    return max(float(np.max(np.abs(nodes_of(run, k) - nodes_of(run, k - tenth)))) for k in last_third(run))
+    return max(float(np.max(np.abs(nodes_of(run, k) - nodes_of(run, k - tenth))[:, 1:-1])) for k in last_third(run))
 
 
 def measure(quantity, run):

@@ -114,7 +114,14 @@ def figures(runs):
 
 
 def _at_standard(runs):
-    return [run for run in runs if run.scene["fluid"]["spacing"] == 0.02 and run.scene["fluid"]["smoothing"] == 1.5]
+    return [run for run in runs if run.scene["fluid"]["spacing"] == 0.02 and run.variant != "wide"]
+
+
+def _kind(run):
+    """Set of models of a run: the preset, the scene's with shifting, or the plain ones."""
+    if run.variant == "plumb":
+        return "plumb"
+    return "shifted" if "shifting" in run.scene["fluid"] else "plain"
 
 
 def _particles(runs):
@@ -138,10 +145,9 @@ def _against_jitter(runs):
 
     figure = Figure(figsize=(6.0, 3.6), layout="constrained")
     axes = figure.subplots()
-    for healed, mark in ((False, "o"), (True, "s")):
-        chosen = [run for run in _at_standard(runs) if ("shifting" in run.scene["fluid"]) == healed]
+    for label, mark in (("plain", "o"), ("shifted", "s"), ("plumb", "^")):
+        chosen = [run for run in _at_standard(runs) if _kind(run) == label]
         jitter = [run.scene["fluid"]["arrange"]["jitter"] for run in chosen]
-        label = "shifted" if healed else "plain"
         axes.plot(jitter, [measured(run)[0] for run in chosen], mark, color="C0", label=f"noise, {label}")
         axes.plot(jitter, [measured(run)[1] for run in chosen], mark, color="C1", label=f"error of the rate, {label}")
     axes.set(xlabel="jitter of the start (spacings)", ylabel="over U, over nu k² (-)")

@@ -17,6 +17,8 @@ UNITS = {
     "height": "m",
     "mass": "kg",
     "pressure_error": "1",
+    "surface_error": "1",
+    "pressure_drift": "1",
     "speed": "1",
     "height_drift": "1",
     "energy_growth": "1",
@@ -55,6 +57,13 @@ class Column:
     def incompressible_pressure(self, depth):
         return self.rho * self.g * np.asarray(depth, float)
 
+    def carried(self, weight):
+        """p, Pa, that carries the weight above, Pa, between particles that lie as they were filled in (README, equation 2)."""
+        p = np.asarray(weight, float)
+        for _ in range(50):  # each round gains a factor 2 p/(rho_0 c^2)
+            p = weight * (tait.density(p, self.rho, self.c) / self.rho) ** 2
+        return p
+
     def depth_of_pressure(self, p):
         """Depth, m, at which the pressure is p: the inverse of `pressure`."""
         return tait.enthalpy(tait.density(p, self.rho, self.c), self.rho, self.c) / self.g
@@ -76,10 +85,27 @@ def pressure_error(column, height, p):
     return float(np.sqrt(np.mean(error**2))), float(np.mean(error))
 
 
-def final_pressure_error(column, run):
-    """Root mean square of the last snapshot's pressures against the exact ones at the particles' own heights."""
-    fluid = run.snapshot(-1)["fluid"]
-    return pressure_error(column, fluid["x"][:, column.axis] - column.floor, fluid["p"])[0]
+def errors_at(column, run, k):
+    """(relative L2 error, bias) of the k-th snapshot's pressures against the exact ones at the particles' own heights."""
+    fluid = run.snapshot(k)["fluid"]
+    return pressure_error(column, fluid["x"][:, column.axis] - column.floor, fluid["p"])
+
+
+def surface_error(column, run):
+    """Root mean square of the last pressures less what the lattice of the start carries, over rho g H, of the particles that
+    were filled in within the kernel's reach of the surface."""
+    fluid, first = run.snapshot(-1)["fluid"], run.snapshot(0)["fluid"]
+    filled = dict(zip(first["id"], first["x"][:, column.axis]))
+    height = np.array([filled[number] for number in fluid["id"]]) - column.floor
+    depth, settings = column.filled - height, run.scene["fluid"]
+    carried = column.carried(column.rho * column.g * depth)
+    near = depth < 2.0 * settings["smoothing"] * settings["spacing"]
+    return float(np.sqrt(np.mean((fluid["p"] - carried)[near] ** 2)) / column.bottom_pressure)
+
+
+def pressure_drift(column, run):
+    """Change of the mean error of the pressure from half time to the end, over rho g H."""
+    return errors_at(column, run, -1)[1] - errors_at(column, run, len(run.snapshot_files()) // 2)[1]
 
 
 def bottom_pressure(column, run):
@@ -120,7 +146,7 @@ def reference(quantity, scene, t):
         return float(column.periods(1)[0])
     if quantity == "speed":
         return np.zeros_like(np.asarray(t, float))
-    if quantity in ("pressure_error", "height_drift"):
+    if quantity in ("pressure_error", "surface_error", "pressure_drift", "height_drift"):
         return 0.0
     raise KeyError(quantity)
 
@@ -128,7 +154,11 @@ def reference(quantity, scene, t):
 def measure(quantity, run):
     column = Column(run.scene)
     if quantity == "pressure_error":
-        return final_pressure_error(column, run)
+        return errors_at(column, run, -1)[0]
+    if quantity == "surface_error":
+        return surface_error(column, run)
+    if quantity == "pressure_drift":
+        return pressure_drift(column, run)
     if quantity == "bottom_pressure":
         return bottom_pressure(column, run)
     if quantity == "speed":
@@ -145,11 +175,14 @@ def figures(runs):
     """Error of the pressure over the height, and the greatest speed over time."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(9.0, 3.8), layout="constrained")
+    figure = Figure(figsize=(11.0, 4.4), layout="constrained")
     profile, speed = figure.subplots(1, 2)
-    for run in runs:
-        if run.failure:
-            continue
+    good = [run for run in runs if not run.failure]
+    names = list(dict.fromkeys(run.variant for run in good))
+    for run in good:
+        number = names.index(run.variant)
+        colour, dash = f"C{number % 10}", "--" if number >= 10 else "-"
+        width = 0.03 / run.scene["fluid"]["spacing"]  # finer spacings are drawn wider
         column, fluid = Column(run.scene), run.snapshot(-1)["fluid"]
         label = f"{run.variant}, H/spacing = {column.filled / run.scene['fluid']['spacing']:.0f}"
         height = fluid["x"][:, column.axis] - column.floor
@@ -157,12 +190,12 @@ def figures(runs):
         error = (fluid["p"] - column.pressure(column.height - np.minimum(height, column.height))) / column.bottom_pressure
         layers = np.unique(layer)
         mean = lambda values: [np.mean(values[layer == n]) for n in layers]  # noqa: E731
-        profile.plot(100.0 * np.array(mean(error)), np.array(mean(height)) / column.filled, lw=1.2, label=label)
+        profile.plot(100.0 * np.array(mean(error)), np.array(mean(height)) / column.filled, dash, color=colour, lw=width, label=label)
         t, v = run.series("greatest_speed")
-        speed.semilogy(t[1:], v[1:] / math.sqrt(column.g * column.filled), lw=1.2)
+        speed.semilogy(t[1:], v[1:] / math.sqrt(column.g * column.filled), dash, color=colour, lw=0.8)
     profile.set_xlabel("error of the pressure [% of rho g H]")
     profile.set_ylabel("height/H")
-    profile.legend(fontsize="x-small")
+    speed.legend(*profile.get_legend_handles_labels(), fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     speed.set_xlabel("t sqrt(g/H)")
     speed.set_ylabel("greatest speed/sqrt(g H)")
     return [("column", figure, "Mean error of the pressure of each layer at the end (left); greatest speed of any particle (right).")]

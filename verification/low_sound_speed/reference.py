@@ -194,16 +194,25 @@ def _mach(runs):
 
     figure = Figure(figsize=(6.0, 3.8), layout="constrained")
     axes = figure.subplots()
-    runs = sorted(runs, key=lambda run: run.scene["fluid"]["sound_speed"])
-    c = np.array([run.scene["fluid"]["sound_speed"] / run.scene["fluid"]["initial"]["speed"] for run in runs])
-    for name, mark in (("density_rms", "o"), ("velocity_l2", "s"), ("compressible_l2", "x")):
-        axes.loglog(c, [measure(name, run) for run in runs], mark, label=name)
+    preset = [run for run in runs if run.variant.startswith("plumb")]
+    runs = sorted((run for run in runs if run.variant == "vortex"), key=lambda run: run.scene["fluid"]["sound_speed"])
+    c = _over_speed(runs)
+    for name, mark, colour in (("density_rms", "o", "C0"), ("velocity_l2", "s", "C1"), ("compressible_l2", "x", "C2")):
+        axes.loglog(c, [measure(name, run) for run in runs], mark, color=colour, label=name)
+        if preset and name != "velocity_l2":
+            label = f"{name}, preset plumb"
+            axes.loglog(_over_speed(preset), [measure(name, run) for run in preset], "^", color=colour, mfc="none", ms=9, label=label)
     t = runs[0].snapshot(-1)["time"]
     axes.loglog(c, [Vortex(run.scene).density_rms(t) for run in runs], "-", label="density: Ma²/4 exp(-2 rate t)")
     axes.loglog(c, [compressibility(run.scene, t) for run in runs], "--", label="compressible less incompressible velocity")
     axes.set(xlabel="c/U (-)", ylabel="relative to rho_0, or to the decayed speed (-)")
-    axes.legend()
+    axes.legend(fontsize=7)
     return figure
+
+
+def _over_speed(runs):
+    """[n] c/U of vortices."""
+    return np.array([run.scene["fluid"]["sound_speed"] / run.scene["fluid"]["initial"]["speed"] for run in runs])
 
 
 def _acoustic(runs):
@@ -221,7 +230,8 @@ def _acoustic(runs):
     axes.semilogx(ratios, curve, "-", label="theory")
     for run in runs:
         held = HeldUp(run.scene)
-        axes.semilogx(held.c / (held.nu * held.k), held.measured(run.snapshot(-1)["fluid"]), "o", label=run.variant)
+        mark = {"marker": "o", "mfc": "none", "ms": 10} if run.variant.startswith("plumb") else {"marker": "o"}
+        axes.semilogx(held.c / (held.nu * held.k), held.measured(run.snapshot(-1)["fluid"]), linestyle="", label=run.variant, **mark)
     axes.set(xlabel="c/(nu k) (-)", ylabel="compression left (-)")
     axes.legend()
     return figure

@@ -167,3 +167,24 @@ def measure(quantity, run):
     norms = {"velocity": velocity_norms, "pressure": pressure_norms, "density": density_norms}[name]
     field = {"velocity": fluid["v"], "pressure": p, "density": fluid["rho"]}[name]
     return float(np.max(norms(run.scene, x, field, t)[norm]))
+
+
+def table(runs):
+    """Velocity errors, and their order from one run to the next finer one; growing_50, growing_100 and growing_200 are one path."""
+    paths = {}
+    for run in (run for run in runs if run.failure is None):
+        paths.setdefault("growing" if run.variant.startswith("growing_") else run.variant, []).append(run)
+    rows = [row for name, path in paths.items() for row in path_rows(name, path)]
+    columns = ["path", "spacing (m)", "h/spacing", "velocity error", "order"]
+    return {"columns": columns, "rows": rows, "caption": "Root mean square of the velocity error, the worse component, over U; order since the row above."}
+
+
+def path_rows(name, path):
+    """Rows of the table for runs of one path of refinement."""
+    rows, before = [], None
+    for run in sorted(path, key=lambda run: -run.scene["fluid"]["spacing"]):
+        fluid, error = run.scene["fluid"], measure("velocity_l2", run)
+        order = math.log(before[1] / error) / math.log(before[0] / fluid["spacing"]) if before else math.nan
+        rows.append([name, f"{fluid['spacing']:g}", f"{fluid['smoothing']:g}", f"{error:.3g}", f"{order:.2f}" if before else ""])
+        before = (fluid["spacing"], error)
+    return rows

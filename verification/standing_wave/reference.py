@@ -189,8 +189,11 @@ def figures(runs):
         damping.axhline(reference("damping_operator", own[-1].scene, 0.0) / (wave.nu * wave.k**2), lw=0.8, ls="--", color=f"C{number}")
     swing.set_xlabel("time [s]")
     swing.set_ylabel("mean of 2 u sin kx, over a omega")
+    spacings = sorted({run.scene["fluid"]["spacing"] for run in good})
+    damping.set_xticks(spacings, [f"{spacing:.3g}" for spacing in spacings], fontsize="small")
+    damping.minorticks_off()
     damping.set_xlabel("spacing [m]")
     damping.set_ylabel("damping/(nu k^2)")
-    damping.legend(fontsize="x-small")
+    damping.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return [("wave", figure, "The swing at the finest spacing (left). Fitted damping (points) and the exact one of the fluid whose surface "
              "each viscous term makes (dashed): no stress with `monaghan_gingold`, no gradient with `morris`.")]

@@ -94,8 +94,12 @@ def _particles(runs):
     from matplotlib.figure import Figure
 
     chosen = [run for run in runs if run.scene["fluid"]["spacing"] == 0.02]
-    figure = Figure(figsize=(2.7 * len(chosen), 3.1), layout="constrained")
-    for axes, run in zip(figure.subplots(1, len(chosen), squeeze=False)[0], chosen):
+    columns = math.ceil(len(chosen) / 2)
+    figure = Figure(figsize=(2.7 * columns, 5.8), layout="constrained")
+    panels = figure.subplots(2, columns, squeeze=False).ravel()
+    for axes in panels[len(chosen):]:
+        axes.remove()
+    for axes, run in zip(panels, chosen):
         fluid = run.snapshot(-1)["fluid"]
         x = np.mod(fluid["x"][:, :2], run.scene["domain"]["size"])
         points = axes.scatter(x[:, 0], x[:, 1], c=np.linalg.norm(fluid["v"], axis=1), s=2, cmap="viridis", vmin=0.0, vmax=1.0)
