@@ -104,7 +104,7 @@ def test_transcriptions_of_the_front_agree(ratio):
     assert np.all(reference.ritter_front(c, seconds) > rows["Z"])
     np.testing.assert_allclose(reference.front(c, seconds[1:-1])["value"], rows["Z"][1:-1])
     speed = reference.speed_of_front(c)
-    assert 1.2 < speed["value"] < 1.5 and speed["uncertainty"] < 0.05
+    assert 1.2 < speed["value"] < 1.5 and 0.03 < speed["uncertainty"] / speed["value"] < 0.06  # 0.05 in T over the 1 to 2 the line is fitted to
     outside = reference.front(c, np.array([0.0, 10.0]))
     assert np.all(np.isnan(outside["value"])) and np.all(np.isnan(outside["uncertainty"]))
 
