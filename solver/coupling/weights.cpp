@@ -170,6 +170,7 @@ void renew_weights(Weights& w, const SphFluid& f, const GrainPlaces& grains) {
         id[j] = static_cast<std::int32_t>(j);
     }
     const double reach = support(w.kernel) * w.h.greatest();
+    assert(std::max(f.clusters.reach, f.clusters.images) >= reach);
     w.grains.reach = reach;
     w.grains.skin = f.clusters.skin;
     const double box = f.domain.size.prod();

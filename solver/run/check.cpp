@@ -80,7 +80,7 @@ Json step_part(const Simulation& s) {
     part["steps"] = total_steps(t);
     part["steps_per_output"] = t.steps_per_output;
     part["outputs"] = t.outputs + 1;
-    if (s.sph) return part;
+    if (s.sph && !s.coupling) return part;
     part["contact_law"] = std::visit([](const auto& pairs) { return law_name(ContactLaw(pairs.laws.front())); },
                                      s.grains.contact.contact);
     part["contact_times"] = contact_times_part(s.grains);
@@ -88,7 +88,9 @@ Json step_part(const Simulation& s) {
 }
 
 Json fluid_part(const Simulation& s) {
-    Json part{{"drag", law_name(s.fluid->drag)}, {"flow", law_name(s.fluid->flow)}, {"grains", Json::array()}};
+    Json part{{"drag", law_name(s.fluid->drag)},
+              {"flow", s.coupling ? "computed" : law_name(s.fluid->flow)},
+              {"grains", Json::array()}};
     for (const GrainNumbers& n : grain_numbers(s))
         part["grains"].push_back({{"group", n.group},
                                   {"diameter", n.diameter},
@@ -159,7 +161,7 @@ Json remarks_part(const std::vector<Remark>& remarks) {
 
 Json report(const Run& run) {
     Json all{{"scene", run.scene.path}, {"scene_hash", run.scene.hash}};
-    if (!run.simulation.sph) all["grains"] = grains_part(run.simulation);
+    if (!run.simulation.sph || run.simulation.coupling) all["grains"] = grains_part(run.simulation);
     all["time"] = step_part(run.simulation);
     if (run.simulation.fluid) all["fluid"] = fluid_part(run.simulation);
     if (run.simulation.sph) all["sph"] = sph_part(run.simulation);

@@ -71,6 +71,7 @@ template <class Fluid, class Visit> void for_each_fluid_field(Fluid& f, Visit&& 
     visit("sph/rho", f.rho);
     visit("sph/drho", f.drho);
     if (!f.lengths.omega.empty()) visit("sph/omega", f.lengths.omega);
+    if (f.among_grains()) visit("sph/share", f.share);
     if (f.memory == 0.0) return;
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
         visit(fmt::format("sph/a_before_{}", axis_names[c]), f.a_before[c]);
@@ -182,6 +183,7 @@ private:
     void load_fluid(FluidOnGrains& fluid, std::size_t n) const;
     void load_boundary(BoundaryParticles& boundary, int dimensions) const;
     void load_sph(SphFluid& fluid) const;
+    void load_coupling(Coupling& coupling, const SphFluid& fluid) const;
     void load_outputs(Run& run, const nlohmann::json& saved) const;
 
     Hdf5Reader file_;
@@ -292,6 +294,12 @@ void Loader::load_sph(SphFluid& f) const {
     restore_lists(f);
 }
 
+void Loader::load_coupling(Coupling& coupling, const SphFluid& fluid) const {
+    read_field("coupling/x_listed", coupling.places.x, coupling.places.size());
+    coupling.clamped = integers("coupling/clamped", 1)[0];
+    renew_weights(coupling.weights, fluid, coupling.places);
+}
+
 void Loader::load_outputs(Run& run, const nlohmann::json& saved) const {
     for (Probe& probe : run.probes) {
         probe.time = file_.doubles("series/" + probe.name + "/time");
@@ -329,10 +337,9 @@ Run Loader::load() {
     system.step = file_.integer("/", "step");
     system.time = static_cast<double>(system.step) * dt;
     system.listed_time = file_.number("/", "listed_time");
-    if (run.simulation.sph)
-        load_sph(*run.simulation.sph);
-    else
-        load_grains(system);
+    if (run.simulation.sph) load_sph(*run.simulation.sph);
+    if (!run.simulation.sph || run.simulation.coupling) load_grains(system);
+    if (run.simulation.coupling) load_coupling(*run.simulation.coupling, *run.simulation.sph);
     if (run.simulation.fluid) load_fluid(*run.simulation.fluid, system.grains.size());
     load_outputs(run, saved);
     run.begun = true;
@@ -358,6 +365,10 @@ void save_checkpoint(const std::string& path, const Run& run, const Cost& cost) 
         file.write(fmt::format("injectors/{}", q), system.injected[q].count);
     if (run.simulation.fluid) write_fluid(file, *run.simulation.fluid);
     if (run.simulation.sph) write_sph(file, *run.simulation.sph);
+    if (run.simulation.coupling) {
+        write_field(file, "coupling/x_listed", run.simulation.coupling->weights.x_listed);
+        file.write("coupling/clamped", std::vector<std::int64_t>{run.simulation.coupling->clamped});
+    }
     write_outputs(file, run);
     write_provenance(file, run, cost);
     file.finish();

@@ -47,7 +47,8 @@ GrainNumbers numbers_of(const Simulation& s, std::size_t group, double radius) {
     n.diameter = d;
     n.density_ratio = rho / fluid.density;
     n.tau_p = rho * d * d / (18.0 * fluid.viscosity); // m/(3 pi mu d), Stokes' drag
-    const double buoyant = chosen(fluid, Buoyancy::name) ? fluid.density : 0.0;
+    const bool in_pressure = s.sph && s.sph->extras.stratified && chosen(fluid, PressureGradient::name);
+    const double buoyant = chosen(fluid, Buoyancy::name) || in_pressure ? fluid.density : 0.0;
     n.terminal_velocity = terminal_slip(fluid, d, eps, std::abs(rho - buoyant) * volume * g);
     n.re = fluid.density * d * eps * n.terminal_velocity / fluid.viscosity;
     n.drag_in_range = within(drag_range(fluid.drag), n.re, eps);
@@ -168,7 +169,7 @@ std::vector<Remark> missing_models(const Simulation& simulation) {
 std::vector<Remark> idle_models(const Simulation& simulation) {
     std::vector<Remark> remarks;
     if (simulation.fluid) remark_on_idle_forces(*simulation.fluid, simulation.grains.domain, remarks);
-    if (!simulation.sph) remark_on_idle_contacts(simulation.grains, remarks);
+    if (!simulation.sph || simulation.coupling) remark_on_idle_contacts(simulation.grains, remarks);
     return remarks;
 }
 

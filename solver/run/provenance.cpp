@@ -78,6 +78,16 @@ std::string provenance_json(const Scene& scene, const Simulation& simulation, co
         j["drag_range"] = {
             {"re_min", use.re_min}, {"re_max", use.re_max}, {"inside", use.inside}, {"outside", use.outside}};
     }
+    if (simulation.coupling) {
+        const Coupling& c = *simulation.coupling;
+        const Vec3& gradient = simulation.fluid->mean_gradient;
+        j["coupling"] = {{"kernel_width", c.weights.h.spread},
+                         {"gather_width", c.weights.h.gather},
+                         {"porosity_width", c.weights.h.porosity},
+                         {"grain_steps", c.grain_steps},
+                         {"clamped_porosities", c.clamped},
+                         {"mean_pressure_gradient", {gradient[0], gradient[1], gradient[2]}}};
+    }
     if (simulation.sph) {
         const SphFluid& f = *simulation.sph;
         j["sph"] = {{"particles", f.particles},     {"boundary_particles", f.boundary.size()},

@@ -85,7 +85,7 @@ void write_grains(Hdf5Writer& file, const Grains& g) {
 void write_fluid(Hdf5Writer& file, const SphFluid& f) {
     const std::vector<std::int32_t> slot = ordered_slots(f);
     const std::size_t n = slot.size();
-    std::vector<double> x(3 * n), v(3 * n), rho(n), p(n);
+    std::vector<double> x(3 * n), v(3 * n), rho(n), p(n), eps;
     std::vector<std::int32_t> id(n);
     for (std::size_t k = 0; k < n; ++k) {
         const auto s = static_cast<std::size_t>(slot[k]);
@@ -93,8 +93,10 @@ void write_fluid(Hdf5Writer& file, const SphFluid& f) {
             x[3 * k + c] = f.x[c][s];
             v[3 * k + c] = f.v[c][s];
         }
-        rho[k] = f.rho[s];
-        p[k] = pressure(f, f.rho[s]);
+        const double share = f.among_grains() ? f.share[s] : 1.0;
+        rho[k] = share * f.rho[s];
+        if (f.among_grains()) eps.push_back(f.eps[s]);
+        p[k] = pressure(f, f.among_grains() ? rho[k] / f.eps[s] : rho[k]);
         id[k] = f.id[s];
     }
     file.write("fluid/x", std::span<const double>(x), {n, 3});
@@ -102,6 +104,10 @@ void write_fluid(Hdf5Writer& file, const SphFluid& f) {
     file.write("fluid/rho", rho);
     file.write("fluid/p", p);
     file.write("fluid/id", id);
+    if (!eps.empty()) {
+        file.write("fluid/eps", eps);
+        file.attribute("fluid/eps", "units", std::string("1"));
+    }
     for (const auto& [name, units] : {std::pair{"x", "m"}, {"v", "m/s"}, {"rho", "kg/m3"}, {"p", "Pa"}, {"id", "1"}})
         file.attribute(fmt::format("fluid/{}", name), "units", std::string(units));
 }
@@ -246,9 +252,18 @@ void write_snapshot(const std::string& path, const Simulation& simulation) {
 void write_xdmf(const std::string& path, const std::vector<SnapshotEntry>& snapshots) {
     std::string text = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n"
                        "    <Grid Name=\"time\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
-    for (const SnapshotEntry& s : snapshots)
-        text += s.particles > 0 ? xdmf_grid(s, {"fluid", s.particles, {"v"}, {"rho", "p"}, {"id"}})
-                                : xdmf_grid(s, {"grains", s.grains, {"v", "omega"}, {"diameter"}, {"id", "group"}});
+    for (const SnapshotEntry& s : snapshots) {
+        const auto fluid = [&] { return xdmf_grid(s, {"fluid", s.particles, {"v"}, {"rho", "p"}, {"id"}}); };
+        const auto grains = [&] {
+            return xdmf_grid(s, {"grains", s.grains, {"v", "omega"}, {"diameter"}, {"id", "group"}});
+        };
+        if (s.particles > 0 && s.grains > 0)
+            text += fmt::format("      <Grid Name=\"both\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"
+                                "        <Time Value=\"{:.17g}\"/>\n{}{}      </Grid>\n",
+                                s.time, fluid(), grains());
+        else
+            text += s.particles > 0 ? fluid() : grains();
+    }
     text += "    </Grid>\n  </Domain>\n</Xdmf>\n";
     write_text(path, text);
 }

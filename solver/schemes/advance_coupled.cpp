@@ -48,6 +48,7 @@ std::vector<Vec3> received_from_fluid(const FluidOnGrains& f, const GrainSystem&
 
 void couple(Coupling& c, SphFluid& fluid, const GrainSystem& grains, bool displaced) {
     fluid.share.assign(fluid.slots(), 1.0);
+    fluid.clusters.images = support(c.weights.kernel) * c.weights.h.greatest();
     renew_lists(fluid);
     set_places(c, grains, 0.0);
     find_porosity(c, fluid, true);

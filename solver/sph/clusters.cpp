@@ -121,7 +121,7 @@ public:
     Layout(FluidClusters& clusters, const Sorted& sorted, const Entries& entries, const Domain& domain)
         : clusters_(clusters), grid_(clusters.grid), sorted_(sorted), entries_(entries), domain_(domain),
           along_(static_cast<std::size_t>(grid_.columns.along)), wraps_(domain.periodic[along_]),
-          reach_(clusters.reach + clusters.skin) {}
+          reach_(std::max(clusters.reach, clusters.images) + clusters.skin) {}
 
     void make() {
         const Columns& columns = grid_.columns;
@@ -240,7 +240,7 @@ void check_periodic_sides(const Domain& domain, double reach_and_skin, const std
 }
 
 ClusterOrder arrange(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing) {
-    const double reach = clusters.reach + clusters.skin;
+    const double reach = std::max(clusters.reach, clusters.images) + clusters.skin;
     check_periodic_sides(domain, reach, "");
     clusters.grid.columns = make_columns(domain, spacing, reach);
     const Entries entries(places);

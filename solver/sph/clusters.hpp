@@ -29,8 +29,9 @@ struct alignas(64) FluidRecord {
 };
 
 struct FluidClusters {
-    double reach = 0.0; // of the kernel [m]
-    double skin = 0.0;  // [m]; the lists hold until a particle has moved skin / 2
+    double reach = 0.0;  // of the kernel [m]
+    double images = 0.0; // how far beyond periodic sides there have to be images, if further than the reach [m]
+    double skin = 0.0;   // [m]; the lists hold until a particle has moved skin / 2
 
     std::size_t count = 0; // of clusters
     NeighbourLists lists;

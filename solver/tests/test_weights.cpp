@@ -1,0 +1,196 @@
+// The matrix P between smoothed particles and grains: porosity, gathering and spreading against all pairs.
+#include "coupling/weights.hpp"
+
+#include "core/random.hpp"
+#include "core/sphere.hpp"
+#include "fluid_fixtures.hpp"
+#include "sph/arrange_fluid.hpp"
+
+#include <numeric>
+
+using namespace plumb;
+using namespace plumb::fixture;
+
+namespace {
+
+constexpr double spacing = 0.1;
+
+/// A box of 1.2 x 1.1 x 1.3 m of jittered particles, each with a velocity, an acceleration and a share of its own.
+SphFluid stirred(const std::array<bool, 3>& periodic) {
+    SphFluid f;
+    f.dimensions = 3;
+    f.domain.size = Vec3(1.2, 1.1, 1.3);
+    f.domain.periodic = periodic;
+    f.density = 1000.0, f.sound_speed = 10.0, f.spacing = spacing, f.h = 1.5 * spacing;
+    f.mass = 1000.0 * std::pow(spacing, 3);
+    f.body_force = Vec3(0.1, -0.2, 0.3);
+    f.clusters.reach = 2.0 * f.h, f.clusters.skin = 0.25 * spacing, f.clusters.images = 0.4;
+    fill_box(f, 0.2, 3);
+    Random random(5);
+    for (std::size_t c = 0; c < 3; ++c) f.a[c].assign(f.slots(), 0.0);
+    f.share.assign(f.slots(), 1.0);
+    for (std::size_t k = 0; k < f.slots(); ++k) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            f.v[c][k] = random.uniform(-1.0, 1.0);
+            f.a[c][k] = random.uniform(-1.0, 1.0);
+        }
+        f.rho[k] = random.uniform(950.0, 1050.0);
+        f.share[k] = random.uniform(0.5, 1.0);
+    }
+    renew_lists(f);
+    return f;
+}
+
+void write_records(SphFluid& f) {
+    for (std::size_t k = 0; k < f.slots(); ++k)
+        if (f.id[k] >= 0)
+            f.clusters.records[static_cast<std::size_t>(f.clusters.record_of[k])] = {
+                f.x[0][k], f.x[1][k], f.x[2][k], 0.0, f.v[0][k], f.v[1][k], f.v[2][k], f.mass / f.rho[k]};
+    update_images(f.clusters, f.domain);
+}
+
+struct Setting {
+    SphFluid fluid;
+    Weights weights;
+    GrainPlaces grains;
+    std::vector<double> mass;
+    GatheredFluid at;
+};
+
+Setting setting(const std::array<bool, 3>& periodic, CouplingWidths widths, std::size_t count = 60) {
+    Setting s{stirred(periodic), {}, {}, {}, {}};
+    s.weights.kernel = WendlandC2{};
+    s.weights.h = widths;
+    Random random(7);
+    for (std::size_t j = 0; j < count; ++j) { // some beyond periodic sides, none beyond open ones
+        Vec3 x;
+        for (int c = 0; c < 3; ++c) {
+            const bool wraps = periodic[static_cast<std::size_t>(c)];
+            x[c] = s.fluid.domain.size[c] * random.uniform(wraps ? -0.5 : 0.1, wraps ? 1.5 : 0.9);
+        }
+        s.grains.x.push_back(x);
+        s.grains.volume.push_back(sphere_volume(random.uniform(0.01, 0.03)));
+        s.mass.push_back(random.uniform(0.01, 0.1));
+    }
+    renew_weights(s.weights, s.fluid, s.grains);
+    for (Vec3& x : s.grains.x)
+        x += Vec3(0.3, -0.4, 0.2) * spacing * 0.2; // the lists still hold: 0.11 of 0.125 spacings
+    place_grains(s.weights, s.fluid.domain, s.grains);
+    set_porosity(s.fluid, s.weights);
+    write_records(s.fluid);
+    gather(s.weights, s.fluid, s.mass, true, s.at);
+    return s;
+}
+
+/// W(r, h) of the Wendland C2 kernel in space.
+double kernel(const Setting& s, const Vec3& a, const Vec3& b, double h) {
+    const double q = s.fluid.domain.minimum_image(a - b).norm() / h;
+    return WendlandC2::sigma(3) / (h * h * h) * (q < 2.0 ? WendlandC2::w(q) : 0.0);
+}
+
+/// Calls visit(slot, x, volume) for every particle once.
+template <class Visit> void for_each_particle(const SphFluid& f, Visit&& visit) {
+    for (std::size_t k = 0; k < f.slots(); ++k)
+        if (f.id[k] >= 0) visit(k, Vec3(f.x[0][k], f.x[1][k], f.x[2][k]), f.mass / f.rho[k]);
+}
+
+const CouplingWidths different{0.15, 0.2, 0.12};
+
+} // namespace
+
+// A neighbour missed or met twice across a side, the wrong kernel's width, a copy that counts.
+TEST(Weights, PorosityIsThatOfAllPairs) {
+    for (const auto& periodic : {std::array{true, true, true}, std::array{false, true, false}}) {
+        const Setting s = setting(periodic, different);
+        for_each_particle(s.fluid, [&](std::size_t k, const Vec3& x, double /*volume*/) {
+            double eps = 1.0;
+            for (std::size_t j = 0; j < s.grains.size(); ++j)
+                eps -= s.grains.volume[j] * kernel(s, x, s.grains.x[j], 0.12);
+            ASSERT_NEAR(s.fluid.eps[k], eps, 1e-13);
+        });
+    }
+}
+
+TEST(Weights, GatheredFieldsAreThoseOfAllPairs) {
+    for (const CouplingWidths& widths : {different, CouplingWidths{0.18, 0.18, 0.18}}) {
+        const Setting s = setting({true, true, true}, widths);
+        const SphFluid& f = s.fluid;
+        std::vector<double> load(f.slots(), 0.0);
+        for (std::size_t j = 0; j < s.grains.size(); ++j) {
+            double total = 0.0;
+            for_each_particle(f, [&](std::size_t, const Vec3& x, double volume) {
+                total += volume * kernel(s, x, s.grains.x[j], widths.spread);
+            });
+            for_each_particle(f, [&](std::size_t k, const Vec3& x, double volume) {
+                load[k] +=
+                    s.mass[j] * volume * kernel(s, x, s.grains.x[j], widths.spread) / total / (f.mass * f.share[k]);
+            });
+        }
+        for (std::size_t j = 0; j < s.grains.size(); ++j) {
+            double total = 0.0, eps = 0.0, of_load = 0.0;
+            Vec3 u = Vec3::Zero(), a = u, stress = u;
+            for_each_particle(f, [&](std::size_t k, const Vec3& x, double volume) {
+                const double weight = volume * kernel(s, x, s.grains.x[j], widths.gather);
+                const Vec3 own(f.a[0][k], f.a[1][k], f.a[2][k]);
+                total += weight, eps += weight * f.eps[k], of_load += weight * load[k];
+                u += weight * Vec3(f.v[0][k], f.v[1][k], f.v[2][k]);
+                a += weight * own;
+                stress += weight * f.share[k] * f.rho[k] * (own - f.body_force);
+            });
+            ASSERT_LT((s.at.u[j] - u / total).norm(), 1e-13);
+            ASSERT_LT((s.at.a[j] - a / total).norm(), 1e-13);
+            ASSERT_LT((s.at.stress[j] - stress / total).norm(), 1e-10);
+            ASSERT_NEAR(s.at.eps[j], eps / total, 1e-13);
+            ASSERT_NEAR(s.at.load[j], of_load / total, 1e-12 * (1.0 + of_load / total));
+        }
+    }
+}
+
+// Forces that are lost at a side, or spread with weights that do not sum to one.
+TEST(Weights, TheFluidReceivesWhatIsSpread) {
+    for (const auto& periodic : {std::array{true, true, true}, std::array{false, true, false}}) {
+        Setting s = setting(periodic, different);
+        std::vector<Vec3> force(s.grains.size());
+        Random random(9);
+        Vec3 sum = Vec3::Zero();
+        for (Vec3& f : force) {
+            f = Vec3(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+            sum += f;
+        }
+        const VectorField before = s.fluid.a;
+        spread(s.fluid, s.weights, force);
+        Vec3 received = Vec3::Zero();
+        for_each_particle(s.fluid, [&](std::size_t k, const Vec3& /*x*/, double /*volume*/) {
+            for (std::size_t c = 0; c < 3; ++c)
+                received[static_cast<Eigen::Index>(c)] +=
+                    s.fluid.mass * s.fluid.share[k] * (s.fluid.a[c][k] - before[c][k]);
+        });
+        EXPECT_LT((received - sum).norm(), 1e-12);
+    }
+}
+
+// Lists that are used after a grain has left them.
+TEST(Weights, ListsKnowWhenTheyAreOutdated) {
+    Setting s = setting({true, true, true}, different);
+    EXPECT_FALSE(outdated(s.weights, s.fluid.domain, s.grains));
+    s.grains.x[3] += Vec3(1.2, 0.0, 0.0); // a whole side: the same place
+    EXPECT_FALSE(outdated(s.weights, s.fluid.domain, s.grains));
+    s.grains.x[3] += Vec3(0.0, 0.02, 0.0);
+    EXPECT_TRUE(outdated(s.weights, s.fluid.domain, s.grains));
+}
+
+// A porosity below the densest packing passes unnoticed.
+TEST(Weights, ClampedPorositiesAreCounted) {
+    Setting s = setting({true, true, true}, different, 1);
+    EXPECT_EQ(set_porosity(s.fluid, s.weights), 0);
+    s.grains.volume[0] = 0.02;
+    place_grains(s.weights, s.fluid.domain, s.grains);
+    const std::int64_t clamped = set_porosity(s.fluid, s.weights);
+    std::int64_t low = 0;
+    for_each_particle(s.fluid, [&](std::size_t k, const Vec3& x, double /*volume*/) {
+        low += 1.0 - 0.02 * kernel(s, x, s.grains.x[0], 0.12) < 0.2595 ? 1 : 0;
+        EXPECT_GE(s.fluid.eps[k], 0.2595);
+    });
+    EXPECT_GT(clamped, 0);
+    EXPECT_EQ(clamped, low);
+}
