@@ -245,7 +245,8 @@ TEST(SphScene, BadBoxIsAnInputError) {
     expect_refused(scene_text(2, {}, {{"size", "[1.0, 0.3]"}}), {"domain.size", "along periodic y"});
     expect_refused(scene_text(3, {}, {{"size", "[1.0, 0.8, 0.25]"}}), {"domain.size", "along periodic z"});
     const std::string grains = "[[grains]]\nname = \"sand\"\n";
-    expect_refused(scene_text(2, {}, {}, grains), {"scene.toml: grains", "sph"});
+    expect_refused(scene_text(2, {}, {}, grains), {"scene.toml: domain", "three dimensions"});
+    expect_refused(scene_text(2, {}, {}, "[coupling]\ndirection = \"two_way\"\n"), {"coupling", "no [grains]"});
     expect_refused(scene_text(3, {}, {}, "[[wall]]\nname = \"floor\"\n"), {"wall[0].shape: missing"});
     std::string verlet = scene_text(2);
     verlet.replace(verlet.find("midpoint"), 8, "velocity_verlet");
