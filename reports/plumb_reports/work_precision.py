@@ -12,10 +12,11 @@ SMALLEST, LARGEST = 4.5, 10.0  # marks, from the coarsest to the finest resoluti
 
 
 def work_precision(case, runs, reference):
-    """{check, quantity, metric, units, points: [{variant, parameter, value, cpu_s, wall_s, error, error_bar, front}]}, or
-    None without [work_precision].
+    """{check, quantity, metric, units, points: [{variant, parameter, value, cpu_s, wall_s, error, error_bar, front}],
+    without_points: [variant]}, or None without [work_precision].
 
-    A run that failed or took no measurable time is left out: the table of runs tells why.
+    A run that failed or took no measurable time is left out: the table of runs tells why. A variant all of whose runs failed
+    is named without points.
     """
     stated = case.work_precision
     if stated is None:
@@ -34,7 +35,14 @@ def work_precision(case, runs, reference):
                        "cpu_s": run.cost()["cpu_s"], "wall_s": run.cost()["wall_s"], "error": error.value,
                        "error_bar": error.error_bar})
     return {"check": check.id, "quantity": check.quantity, "metric": check.metric, "units": units,
-            "points": [{**point, "front": on_front(point, points)} for point in points]}
+            "points": [{**point, "front": on_front(point, points)} for point in points],
+            "without_points": failed_variants(stated.variants, runs, points)}
+
+
+def failed_variants(names, runs, points):
+    """Variants that ran, but have no point on the chart."""
+    ran, shown = {run.variant for run in runs}, {point["variant"] for point in points}
+    return [name for name in names if name in ran - shown]
 
 
 def on_front(point, points):
@@ -63,6 +71,8 @@ def chart(case, content, points):
     for k, variant in enumerate(dict.fromkeys(point["variant"] for point in points)):
         own = [point for point in points if point["variant"] == variant]
         draw_variant(axes, case, own, COLOURS[k % len(COLOURS)], MARKERS[(k + k // len(COLOURS)) % len(MARKERS)])
+    for name in content["without_points"]:
+        axes.plot([], [], "x", color="#3A424A", label=f"{name}: every run failed")
     draw_front(axes, sorted((point for point in points if point["front"]), key=lambda point: point["cpu_s"]))
     axes.margins(x=0.16, y=0.1)
     make_logarithmic(axes)

@@ -1,13 +1,14 @@
 """Work-precision: the front on made-up points, and the chart of a judged case."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 from conftest import SOLVER
 from plumb_reports.__main__ import main
 from plumb_reports.case_file import read_case
 from plumb_reports.strict import CaseError
-from plumb_reports.work_precision import on_front
+from plumb_reports.work_precision import failed_variants, on_front
 
 STATED = """
 [[variant]]
@@ -63,3 +64,8 @@ def test_mistakes(case, pattern, replacement, message):
     with pytest.raises(CaseError) as caught:
         read_case(case.folder)
     assert message in str(caught.value)
+
+
+def test_variants_whose_runs_all_failed_are_named():
+    runs = [SimpleNamespace(variant=name) for name in ("good", "good", "lost")]
+    assert failed_variants(["good", "lost", "of_another_tier"], runs, [{"variant": "good"}]) == ["lost"]
