@@ -1,0 +1,196 @@
+"""A grain carried by its own wake: linear theory of the two-way coupled scheme, without correction (README.md)."""
+
+import math
+import sys
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
+
+from drag_laws.drag_laws import di_felice  # noqa: E402
+from theory import self_disturbance, self_disturbance_history, settling, sph_operators  # noqa: E402
+from theory.released_sphere import Sphere  # noqa: E402
+
+UNITS = {"off_theory": "1", "off_plain_law": "1"}
+SHARE, FLOOR = 0.10, 0.005  # of the disturbance, of u_t: the larger of both is the bound
+REACH = 14.0  # k h of the greatest wave: beyond, the product of the filters is below 1e-6
+EARLIEST = 5.0  # tau_p: from here on the one-way run is compared
+
+
+class Setting(NamedTuple):
+    """What the theory needs of a scene; hashable."""
+
+    two_way: bool
+    rho: float
+    mu: float
+    rho_p: float
+    d: float
+    kernel: str
+    h: float
+    c: float
+    box: tuple
+    end: float
+
+    @property
+    def tau(self):
+        return settling.relaxation_time(self.rho_p, self.d, self.mu)
+
+    @property
+    def volume(self):
+        return math.pi / 6.0 * self.d**3
+
+
+def setting(scene):
+    """Of the scene as it is meant: direction, coupling width, drag law and viscous operator are the case's, which a twin may break.
+    Where the weight is balanced the run is meant to be two-way."""
+    fluid, grain = scene["fluid"], scene["grains"]
+    return Setting(scene["coupling"]["mean_pressure_gradient"] == "balances_weight",
+                   fluid["density"], fluid["viscosity"], grain["density"], grain["diameter"], fluid["kernel"],
+                   fluid["smoothing"] * fluid["spacing"], fluid["sound_speed"], tuple(scene["domain"]["size"]), scene["time"]["end"])
+
+
+def law_of(eps):
+    """Di Felice's factor on the interstitial slip at porosity eps, as a function of the interstitial Re."""
+    return lambda re: eps * di_felice(eps, np.maximum(eps * np.asarray(re, float), 1e-12))
+
+
+def terminal_speed(s):
+    """u_t of Di Felice's law for a lone grain, porosity 1, m/s."""
+    return Sphere(law_of(1.0), s.rho_p, s.d, s.rho, s.mu).terminal_speed()
+
+
+def backflow(scheme, modes, s):
+    """Share b of the grain's speed with which the fluid about it flows the other way, README (3)."""
+    smoothed = sph_operators.transform(s.kernel, 3, modes.k * s.h)
+    rate = s.c**2 * (modes.k * smoothed) ** 2 / self_disturbance.decay_rate(scheme, self_disturbance.Fluid(s.rho, s.mu), modes.k)
+    settled = -np.expm1(-rate * s.end) / smoothed
+    return s.volume * float((modes.share * modes.cosine**2) @ settled)
+
+
+class OwnVolume(Sphere):
+    """A grain that meets the backflow: in v' = (1 + b) v, drag = drag(v' - u_self) and m/(1 + b) dv'/dt is its inertia. With the
+    balanced box, its weight is less by its share of the box."""
+
+    b, share_of_box = 0.0, 0.0
+
+    def inertia(self, added_mass):
+        return super().inertia(added_mass) / (1.0 + self.b)
+
+    def weight(self):
+        return super().weight() * (1.0 - self.share_of_box)
+
+
+@lru_cache(maxsize=None)
+def settled(s, times):
+    """(v, u_self), m/s, downwards, at the times (increasing, > 0) of the uncorrected scheme."""
+    scheme = self_disturbance.one_kernel(s.kernel, s.h)
+    modes = self_disturbance.box_modes(scheme, s.box, reach=REACH)
+    eps = 1.0 - self_disturbance.own_volume_fraction(scheme, s.d)
+    grain = OwnVolume(law_of(eps), s.rho_p, s.d, s.rho, s.mu)
+    grain.b = backflow(scheme, modes, s)
+    if s.two_way:
+        grain.share_of_box = s.volume / math.prod(s.box)
+    else:
+        modes = modes._replace(share=0.0 * modes.share)
+    found = self_disturbance_history.plain_settling(grain, scheme, modes, np.array(times), "slip", stress=s.two_way)
+    return found.v / (1.0 + grain.b), found.u_self
+
+
+def theory(s, t):
+    """The same at times t that may begin with 0."""
+    t = np.asarray(t, float)
+    later = t > 0.0
+    v, u = np.zeros_like(t), np.zeros_like(t)
+    v[later], u[later] = settled(s, tuple(t[later]))
+    return v, u
+
+
+def fall(run):
+    """(t, v), s and m/s, v downwards."""
+    t, v = run.series("v")
+    return t, -np.ravel(v)
+
+
+def measure(quantity, run):
+    if quantity not in UNITS:
+        return NotImplemented
+    s, (t, v) = setting(run.scene), fall(run)
+    expected, u = theory(s, t)
+    u_t = terminal_speed(s)
+    if quantity == "off_theory":  # over the bound
+        return float(np.max(np.abs(v - expected) / np.maximum(SHARE * u, FLOOR * u_t)))
+    late = t > EARLIEST * s.tau * (1.0 - 1e-9)
+    return float(np.max(np.abs(v[late] / expected[late] - 1.0)))
+
+
+def reference(quantity, scene, t):
+    if quantity in UNITS:
+        return 0.0
+    raise KeyError(quantity)
+
+
+# --- the page ---
+
+
+def table(runs):
+    rows = []
+    for run in runs:
+        s, (t, v) = setting(run.scene), fall(run)
+        expected, u = theory(s, t)
+        for multiple in (5, 10, 20, 50, 100):
+            at = int(np.argmin(np.abs(t / s.tau - multiple)))
+            if abs(t[at] / s.tau - multiple) < 0.02 * multiple:
+                u_t = terminal_speed(s)
+                rows.append([run.variant, f"{s.h / s.d:g}", multiple, f"{v[at] / u_t:.4f}", f"{expected[at] / u_t:.4f}", f"{u[at] / u_t:.4f}"])
+    return {"columns": ["run", "h/d", "t/tau_p", "v/u_t", "theory", "of it the wake"], "rows": rows,
+            "caption": "Speed over the terminal velocity of Di Felice's law at porosity 1."}
+
+
+def figures(runs):
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11.0, 4.2), layout="constrained")
+    in_time, over_width = figure.subplots(1, 2)
+    colours = {}
+    for run in sorted(runs, key=lambda run: (run.variant, run.scene["time"]["end"])):
+        _draw_history(in_time, run, colours)
+    for fluid, colour in (("glycerol", "C0"), ("water", "C3")):
+        _draw_widths(over_width, [run for run in runs if run.variant.startswith(fluid) and setting(run.scene).two_way], fluid, colour)
+    over_width.fill_between([2.0, 6.0], -2.0, 2.0, color="0.9", zorder=0, label="claim of the slides")
+    over_width.set(xlabel="h/d (-)", ylabel="error of v (%)")
+    in_time.set(xlabel="t/τ_p (-)", ylabel="error of v (%)", xscale="log", ylim=(-8.0, 32.0))
+    for axes in (in_time, over_width):
+        axes.axhline(0.0, color="0.5", lw=0.6)
+        axes.legend(fontsize=6, ncols=2)
+    return [("self_disturbance", figure, "Error of the two-way coupled, uncorrected speed against Di Felice's terminal velocity; "
+             "lines: theory, marks: runs. Right: at the end of the runs, 20 or 100 tau_p (open: 20).")]
+
+
+def _percent(s, v):
+    return 100.0 * (v / terminal_speed(s) - 1.0)
+
+
+def _draw_history(axes, run, colours):
+    s, (t, v) = setting(run.scene), fall(run)
+    colour = colours.setdefault(run.variant, f"C{len(colours) % 10}")
+    after = t > 1.5 * s.tau
+    axes.plot(t[after] / s.tau, _percent(s, theory(s, t)[0][after]), "-", color=colour, lw=1.0)
+    thin = slice(None, None, max(1, int(after.sum()) // 12))
+    axes.plot(t[after][thin] / s.tau, _percent(s, v[after][thin]), "o" if s.two_way else "x", color=colour, ms=4, mfc="none", label=run.variant)
+
+
+def _draw_widths(axes, runs, fluid, colour):
+    for end, fill in ((20, "none"), (100, colour)):
+        chosen = sorted((run for run in runs if abs(run.scene["time"]["end"] / setting(run.scene).tau / end - 1.0) < 0.05),
+                        key=lambda run: setting(run.scene).h)
+        if not chosen:
+            continue
+        s = [setting(run.scene) for run in chosen]
+        widths = [one.h / one.d for one in s]
+        axes.plot(widths, [_percent(one, theory(one, fall(run)[0])[0][-1]) for one, run in zip(s, chosen)], "-", color=colour, lw=1.0)
+        axes.plot(widths, [_percent(one, fall(run)[1][-1]) for one, run in zip(s, chosen)], "o", color=colour, mfc=fill,
+                  label=f"{fluid}, {end} τ_p")
