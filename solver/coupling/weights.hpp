@@ -52,8 +52,8 @@ struct GatheredFluid {
 /// Whether some grain has moved so far that the lists may miss a neighbour.
 bool outdated(const Weights& weights, const Domain& domain, const GrainPlaces& grains);
 
-/// New lists for the fluid's present lists and the grains' present places; the fluid's images (FluidClusters::images) go
-/// as far as the kernels.
+/// New lists for the fluid's present lists and the grains' present places; the fluid's images (FluidClusters::images)
+/// go as far as the kernels.
 void renew_weights(Weights& weights, const SphFluid& fluid, const GrainPlaces& grains);
 
 /// Puts the grains where they are now.

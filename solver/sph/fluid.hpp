@@ -43,11 +43,11 @@ struct SphFluid {
     // what changes in time
     VectorField x, v, a;     // position [m], velocity [m/s], acceleration of the last evaluation [m/s2]
     Field<double> rho, drho; // density [kg/m3], its rate in the last evaluation [kg/(m3 s)]
-    // Among grains: the mass of a particle over that of a particle of pure fluid, fixed; and the fluid fraction where it
-    // is. `rho` is then the mass of pure fluid over the particle's volume: share rho is the superficial density and
+    // Among grains: the mass of a particle over that of a particle of pure fluid, fixed; and the fluid fraction where
+    // it is. `rho` is then the mass of pure fluid over the particle's volume: share rho is the superficial density and
     // share rho/eps the density of the fluid itself. Empty without grains.
     Field<double> share, eps;
-    VectorField a_before;    // and of the evaluation before that, where memory > 0
+    VectorField a_before; // and of the evaluation before that, where memory > 0
     Field<double> drho_before;
     // of the last evaluation, for shifting; empty without: -grad C [1/m], and what v and rho change by along it
     VectorField spread, dv_spread;
