@@ -210,7 +210,8 @@ def own_volume_fraction(scheme, d):
     """f = V (s o g)(0), the share of its own volume that a grain sees; of order (d/h)^3 and not part of u_self. From it follow
 
     its own porosity 1 - f; with the forces V (-grad p + div tau) on, a whole force of drag/(1 - f) once steady; and a backflow
-    of -(f/3) v that the moving porosity drives (div(eps u) = -d eps/dt, spherical kernels).
+    of -(f/3) v that the moving porosity drives (div(eps u) = -d eps/dt, spherical kernels) if the divergence is exact; smoothed
+    particles answer with V W(0)/3 instead (verification/single_grain, equation 3).
     """
     return math.pi / 6.0 * d**3 * overlap(scheme)
 
