@@ -2,6 +2,7 @@
 #pragma once
 
 #include "run/probes.hpp"
+#include "scene_bench.hpp"
 #include "schemes/simulation.hpp"
 
 #include "fluid_fixtures.hpp"
@@ -41,19 +42,6 @@ inline std::string scene_text(int dimensions, const Keys& fluid_changes = {}, co
     write(fluid);
     return text + "[time]\nend = 1e-2\noutput_interval = 1e-3\nintegrator = \"midpoint\"\nstep = 1e-4\n" + more;
 }
-
-/// A scene read to its end, probes included.
-struct Bench {
-    Scene scene;
-    Simulation simulation;
-    std::vector<Probe> probes;
-    explicit Bench(const std::string& text)
-        : scene(scene_from_text(text, "scene.toml", "/")), simulation(make_simulation(scene)),
-          probes(read_probes(scene, simulation)) {
-        scene.root.finish();
-    }
-    SphFluid& fluid() { return simulation.sph.value(); }
-};
 
 inline void expect_refused(const std::string& text, std::initializer_list<std::string_view> parts) {
     expect_error([&] { Bench bench(text); }, parts);

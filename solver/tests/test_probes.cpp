@@ -4,6 +4,7 @@
 #include "dem/advance_grains.hpp"
 #include "run/probes.hpp"
 #include "run/sphere_overlap.hpp"
+#include "scene_bench.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +13,8 @@
 #include <numbers>
 
 namespace plumb {
+
+using fixture::Bench;
 namespace {
 
 using testing::DoubleNear;
@@ -38,18 +41,6 @@ std::string scene_text(const std::string& extra, const std::string& periodic = "
            "[time]\nend = 1e-2\noutput_interval = 1e-3\nintegrator = \"velocity_verlet\"\nstep = 1e-4\n" +
            extra;
 }
-
-/// A scene with probes, ready to run.
-struct Bench {
-    Scene scene;
-    Simulation simulation;
-    std::vector<Probe> probes;
-    explicit Bench(const std::string& text)
-        : scene(scene_from_text(text, "scene.toml", "/")), simulation(make_simulation(scene)),
-          probes(read_probes(scene, simulation)) {
-        scene.root.finish();
-    }
-};
 
 double probed(const std::string& keys) {
     Bench bench(scene_text("[[probe]]\nname = \"p\"\n" + keys));

@@ -1,5 +1,6 @@
 // Walls, free surfaces and open sides of the smoothed particles: mirror points, interpolated states, what the fluid
 // feels.
+#include "scene_bench.hpp"
 #include "schemes/simulation.hpp"
 #include "sph/interpolation.hpp"
 #include "sph/wall_particles.hpp"
@@ -38,16 +39,6 @@ std::string plane(const char* name, double y, const char* slip = "no_slip", cons
 std::string channel(const char* slip = "no_slip", const char* velocity = "[0.0, 0.0]") {
     return plane("floor", 0.0, slip) + plane("roof", 0.8, slip, velocity);
 }
-
-struct Bench {
-    Scene scene;
-    Simulation simulation;
-    explicit Bench(const std::string& text)
-        : scene(scene_from_text(text, "scene.toml", "/")), simulation(make_simulation(scene)) {
-        scene.root.finish();
-    }
-    SphFluid& fluid() { return simulation.sph.value(); }
-};
 
 void expect_refused(const std::string& text, std::initializer_list<std::string_view> parts) {
     expect_error([&] { Bench bench(text); }, parts);
