@@ -215,6 +215,7 @@ TEST(Coupled, BadScenesAreInputErrors) {
     refused({{"coupling.drag", "\"darcy\""}}, {"coupling.drag", "darcy", "di_felice"});
     refused({{"coupling.forces", "[\"saffman_mei\"]"}}, {"coupling.forces", "saffman_mei", "gradient"});
     refused({{"coupling.forces", "[\"buoyancy\"]"}}, {"coupling.mean_pressure_gradient", "pressure_gradient"});
+    refused({{"coupling.direction", "\"one_way\""}}, {"coupling.mean_pressure_gradient", "one_way", "vector"});
     refused({{"fluid.pressure", "\"full\""}}, {"coupling.forces", "buoyancy", "full"});
     refused({{"fluid.operators", "\"corrected\""}}, {"coupling.direction", "plain"});
     refused({{"time.grain_step", ""}}, {"time.grain_step: missing"});
