@@ -73,6 +73,7 @@ struct VirtualMass {
 /// down by (1 - 0.3314 sqrt(alpha)) exp(-4).
 struct SaffmanMei {
     static constexpr std::string_view name = "saffman_mei";
+    static constexpr bool needs_gradient = true;
     static constexpr LawInfo info{
         "1.615 d^2 sqrt(rho mu/|curl u|) C (u-v) x curl u, C = (1 - 0.3314 sqrt(alpha)) exp(-Re/10) + 0.3314 "
         "sqrt(alpha) for "
@@ -102,6 +103,7 @@ struct SaffmanMei {
 /// creeping-flow lift in any rate of deformation; no finite-Re factor. In a rigid rotation it vanishes.
 struct LiAhmadi {
     static constexpr std::string_view name = "li_ahmadi";
+    static constexpr bool needs_gradient = true;
     static constexpr LawInfo info{"(pi/3) K rho sqrt(nu) d^2 d_ij (u-v)_j/(d_lk d_kl)^(1/4), K = 2.594",
                                   "Re << sqrt(G d^2/nu) << 1, small grains",
                                   "Li & Ahmadi 1992, Aerosol Sci. Technol. 16, 209-226"};
@@ -134,6 +136,15 @@ inline Vec3 force_from_outside(const OtherForce& law, const LocalFluid& fluid, c
                 return one.from_outside(fluid, grain, gravity, mean_gradient);
             else
                 return Vec3::Zero();
+        },
+        law);
+}
+
+/// Whether a law reads LocalFluid::gradient; it says so with `needs_gradient`.
+inline bool needs_gradient(const OtherForce& law) {
+    return std::visit(
+        [](const auto& one) {
+            return requires { one.needs_gradient; };
         },
         law);
 }

@@ -5,7 +5,7 @@
 #include "core/parallel.hpp"
 #include "coupling/weights.hpp"
 
-namespace plumb::weight_loops {
+namespace plumb {
 
 /// Calls body for every group of eight.
 template <class Body> void for_each_group(std::size_t groups, Body&& body) {
@@ -66,4 +66,4 @@ template <class Put> void for_each_grain_of(const Weights& w, std::size_t group,
     }
 }
 
-} // namespace plumb::weight_loops
+} // namespace plumb

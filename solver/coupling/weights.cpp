@@ -12,8 +12,6 @@ namespace plumb {
 
 namespace {
 
-using namespace weight_loops;
-
 const double least_porosity = 1.0 - std::numbers::pi / std::sqrt(18.0); // densest packing of equal spheres
 
 Pack inverse(double h) { return broadcast<Pack>(1.0 / h); }
@@ -51,6 +49,35 @@ template <class Law> GatherSums gather_sums(const Weights& w, const SphFluid& f,
         }
     });
     return sums;
+}
+
+/// Of the velocity gathered at x: grad u = sum V (v - u)(x) grad W/sum V W, exactly. It is that of a linear flow as far
+/// as the kernel's sum over the particles is that of its integral.
+template <class Law> void gather_gradient(const Weights& w, const SphFluid& f, GatheredFluid& at) {
+    const double over_h = 1.0 / w.h.gather;
+    for_each_group(w.grains.count, [&](std::size_t group) {
+        std::array<Pack, 3> u{}, slope{};
+        std::array<std::array<Pack, 3>, 3> product{};
+        for_particles_near(w, f, group, [&](const Apart& apart, const FluidRecord& b, std::size_t /*slot*/) {
+            const Pack q = apart.r * broadcast<Pack>(over_h), volume = broadcast<Pack>(b.volume);
+            const Pack share = Law::w(q) * volume, along = Law::f(q) * volume;
+            const std::array<Pack, 3> v{broadcast<Pack>(b.u), broadcast<Pack>(b.v), broadcast<Pack>(b.w)};
+            for (std::size_t c = 0; c < 3; ++c) {
+                const Pack part = along * apart.dx[c];
+                slope[c] += part;
+                u[c] += share * v[c];
+                for (std::size_t i = 0; i < 3; ++i) product[i][c] += v[i] * part;
+            }
+        });
+        const Pack total = load(w.gather_sum, group);
+        for_each_grain_of(w, group, [&](std::size_t id, int lane) {
+            const double over_total = total[lane] > 0.0 ? 1.0 / total[lane] : 0.0, scale = over_total * over_h * over_h;
+            for (std::size_t i = 0; i < 3; ++i)
+                for (std::size_t c = 0; c < 3; ++c)
+                    at.gradient[id](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c)) =
+                        scale * (product[i][c][lane] - over_total * u[i][lane] * slope[c][lane]);
+        });
+    });
 }
 
 /// Mass of the grains over that of the fluid, spread as their forces are, at every particle of the fluid.
@@ -190,6 +217,10 @@ void gather(Weights& w, const SphFluid& f, const std::vector<double>& mass, bool
                 }
             });
         });
+        if (at.wants_gradient) {
+            at.gradient.resize(n);
+            gather_gradient<Law>(w, f, at);
+        }
         if (!with_load) return;
         write_records(w, f.domain, [&](CouplingRecord& record, std::size_t id, double over_sum) {
             record.mass = over_sum * mass[id];

@@ -55,6 +55,9 @@ struct GatheredFluid {
     std::vector<Vec3> stress; // -grad P + div tau [N/m3]
     std::vector<double> eps;  // fluid fraction
     std::vector<double> load; // mass of grains over mass of fluid, where the grain's force goes; 0 one way
+
+    bool wants_gradient = false;           // set where a force needs it
+    std::vector<Eigen::Matrix3d> gradient; // (i, j) = d u_i/d x_j of the velocity at the middle of the step [1/s]
 };
 
 /// Whether some grain has moved so far that the lists may miss a neighbour.

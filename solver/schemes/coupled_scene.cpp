@@ -85,10 +85,8 @@ FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid) {
     read_coupling_laws(coupling, f);
     if (f.history) coupling.fail("forces", "\"basset\" needs a given flow");
     for (const OtherForce& law : f.forces) {
-        const std::string name = law_name(law);
-        if (name == "saffman_mei" || name == "li_ahmadi")
-            coupling.fail("forces", fmt::format("\"{}\" needs the gradient of a given flow", name));
-        if (name == "buoyancy" && fluid.extras.stratified)
+        f.at_grains.wants_gradient |= needs_gradient(law);
+        if (std::holds_alternative<Buoyancy>(law) && fluid.extras.stratified)
             coupling.fail("forces", "\"buoyancy\" is in the gradient of a \"full\" pressure already");
     }
     return f;

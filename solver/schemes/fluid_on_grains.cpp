@@ -45,6 +45,7 @@ LocalFluid fluid_at_grain(const FluidOnGrains& f, const GrainSystem& system, std
     LocalFluid local;
     local.u = f.at_grains.u[id] + (0.5 * dt) * f.at_grains.a[id];
     local.acceleration = (f.at_grains.stress[id] - f.mean_gradient) / f.density;
+    if (f.at_grains.wants_gradient) local.gradient = f.at_grains.gradient[id];
     local.eps = f.at_grains.eps[id];
     local.density = f.density;
     local.viscosity = f.viscosity;
