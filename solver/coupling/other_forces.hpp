@@ -2,8 +2,9 @@
 //
 // Each law maps (fluid at the grain, grain, gravity) to a force on the grain [N]. V = pi d^3/6. The undisturbed fluid
 // obeys rho Du/Dt = -grad p + div tau + rho g, so the stress it would exert on the volume of the grain, V (-grad p +
-// div tau), is the sum of `buoyancy` and `pressure_gradient`. To add a force: write the struct, name it in OtherForce
-// at the end, add its test and its README row.
+// div tau), is the sum of `buoyancy` and `pressure_gradient`. A force that no computed fluid may exert, because that
+// fluid does not carry the pressure behind it, says so with `from_outside`: what a grain receives by it, the fluid does
+// not lose. To add a force: write the struct, name it in OtherForce at the end, add its test and its README row.
 #pragma once
 
 #include "core/laws.hpp"
@@ -23,6 +24,11 @@ struct Buoyancy {
     Vec3 operator()(const LocalFluid& fluid, const LocalGrain& grain, const Vec3& gravity) const {
         return -fluid.density * sphere_volume(grain.diameter) * gravity;
     }
+    /// All of it: the hydrostatic pressure is left out of a computed fluid's.
+    Vec3 from_outside(const LocalFluid& fluid, const LocalGrain& grain, const Vec3& gravity,
+                      const Vec3& /*mean_gradient*/) const {
+        return (*this)(fluid, grain, gravity);
+    }
 };
 
 /// rho V Du/Dt: stress of the accelerating undisturbed flow, without its hydrostatic part. Du/Dt follows the fluid
@@ -34,6 +40,11 @@ struct PressureGradient {
                                   "Maxey & Riley 1983, Phys. Fluids 26, 883-889"};
     Vec3 operator()(const LocalFluid& fluid, const LocalGrain& grain, const Vec3& /*gravity*/) const {
         return fluid.density * sphere_volume(grain.diameter) * fluid.acceleration;
+    }
+    /// The share of a mean pressure gradient [Pa/m], which drives fluid and grains alike.
+    Vec3 from_outside(const LocalFluid& /*fluid*/, const LocalGrain& grain, const Vec3& /*gravity*/,
+                      const Vec3& mean_gradient) const {
+        return -sphere_volume(grain.diameter) * mean_gradient;
     }
 };
 
@@ -62,6 +73,7 @@ struct VirtualMass {
 /// down by (1 - 0.3314 sqrt(alpha)) exp(-4).
 struct SaffmanMei {
     static constexpr std::string_view name = "saffman_mei";
+    static constexpr bool needs_gradient = true;
     static constexpr LawInfo info{
         "1.615 d^2 sqrt(rho mu/|curl u|) C (u-v) x curl u, C = (1 - 0.3314 sqrt(alpha)) exp(-Re/10) + 0.3314 "
         "sqrt(alpha) for "
@@ -91,6 +103,7 @@ struct SaffmanMei {
 /// creeping-flow lift in any rate of deformation; no finite-Re factor. In a rigid rotation it vanishes.
 struct LiAhmadi {
     static constexpr std::string_view name = "li_ahmadi";
+    static constexpr bool needs_gradient = true;
     static constexpr LawInfo info{"(pi/3) K rho sqrt(nu) d^2 d_ij (u-v)_j/(d_lk d_kl)^(1/4), K = 2.594",
                                   "Re << sqrt(G d^2/nu) << 1, small grains",
                                   "Li & Ahmadi 1992, Aerosol Sci. Technol. 16, 209-226"};
@@ -112,6 +125,28 @@ using OtherForce = std::variant<Buoyancy, PressureGradient, VirtualMass, Saffman
 inline Vec3 force_on_grain(const OtherForce& law, const LocalFluid& fluid, const LocalGrain& grain,
                            const Vec3& gravity) {
     return std::visit([&](const auto& one) -> Vec3 { return one(fluid, grain, gravity); }, law);
+}
+
+/// Share of a force that no computed fluid exerts [N]; zero for laws that do not speak of it.
+inline Vec3 force_from_outside(const OtherForce& law, const LocalFluid& fluid, const LocalGrain& grain,
+                               const Vec3& gravity, const Vec3& mean_gradient) {
+    return std::visit(
+        [&](const auto& one) -> Vec3 {
+            if constexpr (requires { one.from_outside(fluid, grain, gravity, mean_gradient); })
+                return one.from_outside(fluid, grain, gravity, mean_gradient);
+            else
+                return Vec3::Zero();
+        },
+        law);
+}
+
+/// Whether a law reads LocalFluid::gradient; it says so with `needs_gradient`.
+inline bool needs_gradient(const OtherForce& law) {
+    return std::visit(
+        [](const auto& one) {
+            return requires { one.needs_gradient; };
+        },
+        law);
 }
 
 /// Inertia a law adds to a grain [kg]; zero for all but virtual mass.

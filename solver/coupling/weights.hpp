@@ -26,18 +26,26 @@ struct GrainPlaces {
     std::size_t size() const { return x.size(); }
 };
 
+/// What the fluid reads of one grain.
+struct alignas(64) CouplingRecord {
+    double x, y, z;    // [m]
+    double volume;     // [m3]
+    double fx, fy, fz; // force to be spread over S_j [N/m3]
+    double mass;       // over S_j [kg/m3]
+};
+
 struct Weights {
     Kernel kernel;
     CouplingWidths h;
 
-    // Grains in groups of eight, as the fluid's particles are. Of a record p_over_rho_sq holds the volume of the grain
-    // [m3]; u, v, w and volume what is spread, per S_j.
-    FluidClusters grains;
+    Clusters grains; // in groups of eight, as the fluid's particles are
+    Field<CouplingRecord> records;
     std::vector<std::int32_t> id;             // [slots] of the grain, -1 in the copies that fill a group
     std::vector<Vec3> x_listed;               // by id: where the grains were when the lists were built, in the box [m]
     NeighbourLists fluid_near, grains_near;   // records of the fluid near groups of grains, and the other way round
     std::vector<std::int32_t> slot_of_record; // of the fluid's particle behind a record
-    Field<double> sum;                        // S_j of the spreading kernel, by slot
+    Field<double> sum, gather_sum;            // S_j of the spreading and of the gathering kernel, by slot
+    Field<double> load;                       // mass of grains over mass of fluid, by slot of the fluid
 };
 
 /// What the fluid is at the grains, by id.
@@ -47,6 +55,9 @@ struct GatheredFluid {
     std::vector<Vec3> stress; // -grad P + div tau [N/m3]
     std::vector<double> eps;  // fluid fraction
     std::vector<double> load; // mass of grains over mass of fluid, where the grain's force goes; 0 one way
+
+    bool wants_gradient = false;           // set where a force needs it
+    std::vector<Eigen::Matrix3d> gradient; // (i, j) = d u_i/d x_j of the velocity at the middle of the step [1/s]
 };
 
 /// Whether some grain has moved so far that the lists may miss a neighbour.
@@ -63,7 +74,7 @@ void place_grains(Weights& weights, const Domain& domain, const GrainPlaces& gra
 /// packing of equal spheres leaves, 1 - pi/sqrt 18, and were set to it.
 std::int64_t set_porosity(SphFluid& fluid, const Weights& weights);
 
-/// The fluid at the grains, and S_j. `mass` of all grains by id [kg], for `load`, if it is wanted.
+/// The fluid at the grains, and the S_j. `mass` of all grains by id [kg], for `load`, if it is wanted.
 void gather(Weights& weights, const SphFluid& fluid, const std::vector<double>& mass, bool with_load,
             GatheredFluid& at_grains);
 

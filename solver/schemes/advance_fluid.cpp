@@ -1,8 +1,8 @@
 #include "schemes/advance_fluid.hpp"
 
 #include "core/errors.hpp"
+#include "core/packed_field.hpp"
 #include "core/parallel.hpp"
-#include "core/simd.hpp"
 #include "sph/vector_at.hpp"
 #include "sph/wall_particles.hpp"
 
@@ -10,7 +10,6 @@
 #include <atomic>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 
 namespace plumb {
 
@@ -90,16 +89,6 @@ void remember_rates(SphFluid& f) {
         throw Diverged(step, time, "fluid velocity", id, speed,
                        std::isfinite(speed) ? "more than the speed of sound" : "not a number");
     throw Diverged(step, time, "fluid density", id, f.rho[k], "changed by more than half");
-}
-
-Pack load(const Field<double>& field, std::size_t cluster) {
-    Pack value;
-    std::memcpy(&value, &field[pack_width * cluster], sizeof value);
-    return value;
-}
-void add(Field<double>& field, std::size_t cluster, Pack change) {
-    change += load(field, cluster);
-    std::memcpy(&field[pack_width * cluster], &change, sizeof change);
 }
 
 /// Moves eight particles down the gradient of the concentration, by a tenth of the spacing at most, and gives them the

@@ -42,6 +42,27 @@ void read_self_disturbance(Table& coupling, Coupling& c, const SphFluid& fluid, 
     c.self->memory.assign(r.size() * wake_size(), 0.0);
 }
 
+/// All weight, less what carries it from outside, over the volume of what feels the gradient [Pa/m].
+Vec3 balancing_gradient(const SphFluid& fluid, const FluidOnGrains& on_grains, const GrainSystem& system) {
+    double volume = 0.0;
+    Vec3 weight = Vec3::Zero();
+    for (std::size_t k = 0; k < fluid.slots(); ++k) {
+        if (fluid.id[k] < 0) continue;
+        const double mass = fluid.mass * fluid.share[k];
+        volume += mass / fluid.density;
+        weight += mass * fluid.body_force;
+    }
+    const Grains& g = system.grains;
+    for (const std::int32_t place : positions_of_ids(g)) {
+        const auto k = static_cast<std::size_t>(place);
+        const double d = 2.0 * g.radius[k];
+        volume += sphere_volume(d);
+        weight += g.mass[k] * system.domain.gravity;
+        weight += force_from_outside(on_grains, d, system.domain.gravity);
+    }
+    return weight / volume;
+}
+
 } // namespace
 
 Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem& grains) {
@@ -74,7 +95,7 @@ Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem
     return c;
 }
 
-FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid, const GrainSystem& /*grains*/) {
+FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid) {
     FluidOnGrains f;
     f.density = fluid.density;
     f.viscosity = fluid.viscosity;
@@ -83,10 +104,8 @@ FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid, const Grai
     read_coupling_laws(coupling, f);
     if (f.history) coupling.fail("forces", "\"basset\" needs a given flow");
     for (const OtherForce& law : f.forces) {
-        const std::string name = law_name(law);
-        if (name == "saffman_mei" || name == "li_ahmadi")
-            coupling.fail("forces", fmt::format("\"{}\" needs the gradient of a given flow", name));
-        if (name == "buoyancy" && fluid.extras.stratified)
+        f.at_grains.wants_gradient |= needs_gradient(law);
+        if (std::holds_alternative<Buoyancy>(law) && fluid.extras.stratified)
             coupling.fail("forces", "\"buoyancy\" is in the gradient of a \"full\" pressure already");
     }
     return f;
@@ -100,23 +119,12 @@ void drive(Table& coupling, SphFluid& fluid, FluidOnGrains& on_grains, const Cou
         coupling.fail("mean_pressure_gradient", "needs \"pressure_gradient\" among the forces");
     if (coupling.type("mean_pressure_gradient") == toml::node_type::string) {
         coupling.choice("mean_pressure_gradient", {"balances_weight"});
-        // All weight, over the volume of what feels the gradient.
-        double volume = 0.0;
-        Vec3 weight = Vec3::Zero();
-        for (std::size_t k = 0; k < fluid.slots(); ++k) {
-            if (fluid.id[k] < 0) continue;
-            const double mass = fluid.mass * fluid.share[k];
-            volume += mass / fluid.density;
-            weight += mass * fluid.body_force;
-        }
-        for (std::size_t id = 0; id < state.mass.size(); ++id) {
-            volume += state.places.volume[id];
-            weight += state.mass[id] * grains.domain.gravity;
-            for (const OtherForce& law : on_grains.forces)
-                if (std::holds_alternative<Buoyancy>(law))
-                    weight -= fluid.density * state.places.volume[id] * grains.domain.gravity;
-        }
-        on_grains.mean_gradient = weight / volume;
+        if (!state.two_way)
+            coupling.fail(
+                "mean_pressure_gradient",
+                "nothing hands the grains' weight to a fluid that does not feel them (direction = \"one_way\"): "
+                "give a vector [Pa/m], or leave it out");
+        on_grains.mean_gradient = balancing_gradient(fluid, on_grains, grains);
     } else {
         on_grains.mean_gradient = coupling.components("mean_pressure_gradient", 3);
     }

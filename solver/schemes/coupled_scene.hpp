@@ -11,7 +11,7 @@ namespace plumb {
 Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem& grains);
 
 /// The forces of the fluid on the grains.
-FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid, const GrainSystem& grains);
+FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid);
 
 /// A mean pressure gradient, if the scene names one; after couple(), which sets the masses that it may have to balance.
 void drive(Table& coupling, SphFluid& fluid, FluidOnGrains& on_grains, const Coupling& state,

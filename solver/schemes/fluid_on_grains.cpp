@@ -45,6 +45,7 @@ LocalFluid fluid_at_grain(const FluidOnGrains& f, const GrainSystem& system, std
     LocalFluid local;
     local.u = f.at_grains.u[id] + (0.5 * dt) * f.at_grains.a[id];
     local.acceleration = (f.at_grains.stress[id] - f.mean_gradient) / f.density;
+    if (f.at_grains.wants_gradient) local.gradient = f.at_grains.gradient[id];
     local.eps = f.at_grains.eps[id];
     local.density = f.density;
     local.viscosity = f.viscosity;
@@ -259,15 +260,11 @@ void set_inertia(FluidOnGrains& fluid, GrainSystem& system, double dt) {
 }
 
 Vec3 force_from_outside(const FluidOnGrains& f, double diameter, const Vec3& gravity) {
+    LocalFluid fluid;
+    fluid.density = f.density;
     Vec3 force = Vec3::Zero();
-    for (const OtherForce& law : f.forces) {
-        if (const auto* buoyancy = std::get_if<Buoyancy>(&law)) {
-            LocalFluid fluid;
-            fluid.density = f.density;
-            force += (*buoyancy)(fluid, {diameter, Vec3::Zero()}, gravity);
-        }
-        if (std::holds_alternative<PressureGradient>(law)) force -= sphere_volume(diameter) * f.mean_gradient;
-    }
+    for (const OtherForce& law : f.forces)
+        force += force_from_outside(law, fluid, {diameter, Vec3::Zero()}, gravity, f.mean_gradient);
     return force;
 }
 

@@ -176,7 +176,7 @@ void make_coupled(Table& root, Simulation& s) {
     s.grains.integrator = Integrator::velocity_verlet;
     Table coupling = root.table("coupling"), time = root.table("time");
     s.coupling = read_coupling(coupling, *s.sph, s.grains);
-    s.fluid = fluid_on_grains(coupling, *s.sph, s.grains);
+    s.fluid = fluid_on_grains(coupling, *s.sph);
     couple(*s.coupling, *s.sph, s.grains, coupling.choice("fluid_mass", {"displaced", "pure"}) == "displaced");
     drive(coupling, *s.sph, *s.fluid, *s.coupling, s.grains);
     s.timing = timing(time, fluid_limits(*s.sph), probe_intervals(root));

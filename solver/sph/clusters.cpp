@@ -118,7 +118,7 @@ std::pair<std::int32_t, int> unwrapped(std::int32_t c, std::int32_t n) {
 /// Lays out the records: per extended column the images below, the particles, the images above.
 class Layout {
 public:
-    Layout(FluidClusters& clusters, const Sorted& sorted, const Entries& entries, const Domain& domain)
+    Layout(Clusters& clusters, const Sorted& sorted, const Entries& entries, const Domain& domain)
         : clusters_(clusters), grid_(clusters.grid), sorted_(sorted), entries_(entries), domain_(domain),
           along_(static_cast<std::size_t>(grid_.columns.along)), wraps_(domain.periodic[along_]),
           reach_(std::max(clusters.reach, clusters.images) + clusters.skin) {}
@@ -217,7 +217,7 @@ private:
                                    : clusters_.record_of[static_cast<std::size_t>(sorted_.slot[q])];
     }
 
-    FluidClusters& clusters_;
+    Clusters& clusters_;
     RecordGrid& grid_;
     const Sorted& sorted_;
     const Entries& entries_;
@@ -239,7 +239,7 @@ void check_periodic_sides(const Domain& domain, double reach_and_skin, const std
                             reach_and_skin));
 }
 
-ClusterOrder arrange(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing) {
+ClusterOrder arrange(Clusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing) {
     const double reach = std::max(clusters.reach, clusters.images) + clusters.skin;
     check_periodic_sides(domain, reach, "");
     clusters.grid.columns = make_columns(domain, spacing, reach);
@@ -250,11 +250,10 @@ ClusterOrder arrange(FluidClusters& clusters, const ParticlePlaces& places, cons
     clusters.count = order.from.size() / pack_width;
     Layout(clusters, sorted, entries, domain).make();
     make_bins(clusters.grid);
-    renew_size(clusters.records, clusters.grid.records());
     return order;
 }
 
-std::array<std::vector<double>, 3> lane_places(const FluidClusters& clusters, int dimensions) {
+std::array<std::vector<double>, 3> lane_places(const Clusters& clusters, int dimensions) {
     std::array<std::vector<double>, 3> place;
     const std::size_t lanes = clusters.record_of.size();
     for (std::size_t axis = 0; axis < static_cast<std::size_t>(dimensions); ++axis) {
@@ -268,22 +267,10 @@ std::array<std::vector<double>, 3> lane_places(const FluidClusters& clusters, in
 
 ClusterOrder rebuild(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing) {
     ClusterOrder order = arrange(clusters, places, domain, spacing);
+    renew_size(clusters.records, clusters.grid.records());
     list_records(clusters.lists, clusters.grid, lane_places(clusters, domain.dimensions), domain.dimensions,
                  clusters.reach + clusters.skin, {});
     return order;
-}
-
-void update_images(FluidClusters& clusters, const Domain& domain) {
-    parallel_for(clusters.records.size(), [&](std::size_t r) {
-        const auto source = static_cast<std::size_t>(clusters.image_of[r]);
-        if (source == r) return;
-        FluidRecord image = clusters.records[source];
-        const int shift = clusters.image_shift[r];
-        image.x += domain.size[0] * (shift / 9 - 1);
-        image.y += domain.size[1] * (shift / 3 % 3 - 1);
-        image.z += domain.size[2] * (shift % 3 - 1);
-        clusters.records[r] = image;
-    });
 }
 
 } // namespace plumb

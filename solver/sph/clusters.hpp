@@ -11,11 +11,13 @@
 
 #include "core/domain.hpp"
 #include "core/field.hpp"
+#include "core/parallel.hpp"
 #include "core/simd.hpp"
 #include "sph/record_grid.hpp"
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -28,7 +30,8 @@ struct alignas(64) FluidRecord {
     double x, y, z, p_over_rho_sq, u, v, w, volume;
 };
 
-struct FluidClusters {
+/// Places in groups of eight and where their records are laid out; the records themselves are the owner's.
+struct Clusters {
     double reach = 0.0;  // of the kernel [m]
     double images = 0.0; // how far beyond periodic sides there have to be images, if further than the reach [m]
     double skin = 0.0;   // [m]; the lists hold until a particle has moved skin / 2
@@ -36,7 +39,6 @@ struct FluidClusters {
     std::size_t count = 0; // of clusters
     NeighbourLists lists;
     RecordGrid grid;
-    Field<FluidRecord> records;
     std::vector<std::int32_t> record_of;         // [slots] of the particle itself
     std::vector<std::int32_t> record_of_passive; // [passive particles]
     std::vector<std::uint8_t> passive;           // [records] 1 for passive ones; empty when there are none
@@ -45,6 +47,10 @@ struct FluidClusters {
 
     /// Records near a cluster, ascending.
     std::span<const std::int32_t> near(std::size_t cluster) const { return lists.near(cluster); }
+};
+
+struct FluidClusters : Clusters {
+    Field<FluidRecord> records;
 };
 
 /// Positions of the particles to be clustered, by slot (`id` is -1 in copies), and of the passive ones.
@@ -60,18 +66,47 @@ struct ClusterOrder {
     std::vector<std::uint8_t> copy;
 };
 
-/// Sorts the particles into clusters and lays out their records. The result depends on positions and ids only.
-/// InputError when a periodic side is shorter than two reaches.
-ClusterOrder arrange(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing);
+/// Sorts the particles into clusters and lays out their records, which are the caller's to make. The result depends on
+/// positions and ids only. InputError when a periodic side is shorter than two reaches.
+ClusterOrder arrange(Clusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing);
 
 /// Where the records of the clusters' lanes are, by axis [m].
-std::array<std::vector<double>, 3> lane_places(const FluidClusters& clusters, int dimensions);
+std::array<std::vector<double>, 3> lane_places(const Clusters& clusters, int dimensions);
 
 /// arrange, and the lists of the records near each cluster.
 ClusterOrder rebuild(FluidClusters& clusters, const ParticlePlaces& places, const Domain& domain, double spacing);
 
-/// Copies the records of particles to their images, shifted by whole sides.
-void update_images(FluidClusters& clusters, const Domain& domain);
+/// Copies the records of particles to their images, shifted by whole sides. A record has its place in x, y, z.
+template <class Record> void update_images(const Clusters& clusters, Field<Record>& records, const Domain& domain) {
+    parallel_for(records.size(), [&](std::size_t r) {
+        const auto source = static_cast<std::size_t>(clusters.image_of[r]);
+        if (source == r) return;
+        Record image = records[source];
+        const int shift = clusters.image_shift[r];
+        image.x += domain.size[0] * (shift / 9 - 1);
+        image.y += domain.size[1] * (shift / 3 % 3 - 1);
+        image.z += domain.size[2] * (shift % 3 - 1);
+        records[r] = image;
+    });
+}
+inline void update_images(FluidClusters& clusters, const Domain& domain) {
+    update_images(clusters, clusters.records, domain);
+}
+
+/// Loads the records of a cluster, of eight numbers each, as eight lanes of every number.
+template <class Record>
+inline void load_cluster(const Clusters& clusters, const Field<Record>& records, std::size_t cluster,
+                         Pack (&lanes)[8]) {
+    static_assert(sizeof(Record) == sizeof(Pack));
+    for (std::size_t lane = 0; lane < pack_width; ++lane)
+        std::memcpy(&lanes[lane], &records[static_cast<std::size_t>(clusters.record_of[pack_width * cluster + lane])],
+                    sizeof(Pack));
+    transpose(lanes);
+}
+/// x y z p/rho^2 u v w V.
+inline void load_cluster(const FluidClusters& clusters, std::size_t cluster, Pack (&lanes)[8]) {
+    load_cluster(clusters, clusters.records, cluster, lanes);
+}
 
 /// InputError, naming `file`, when a periodic side is shorter than two reaches of the kernel with its skin.
 void check_periodic_sides(const Domain& domain, double reach_and_skin, const std::string& file);

@@ -134,9 +134,7 @@ template <class KernelLaw, int d> SecondSums<d> second_sums(SphFluid& f, std::si
     const auto x = components<d>(lanes[0], lanes[1], lanes[2]);
     const Gradients<Pack, d> own = load_gradients<d>(f, cluster);
     Symmetric<Pack, d> inverse{};
-    for_inverse<d>(f, inverse, [&](const Field<double>& field, Pack& value) {
-        std::memcpy(&value, &field[pack_width * cluster], sizeof value);
-    });
+    for_inverse<d>(f, inverse, [&](const Field<double>& field, Pack& value) { value = load(field, cluster); });
     const Pack scale = broadcast<Pack>(1.0 / f.h), m = broadcast<Pack>(f.mass), m_over_volume = m / lanes[7];
     const Pack zero = broadcast<Pack>(0.0), half = broadcast<Pack>(0.5);
     SecondSums<d> sums{components<d>(zero, zero, zero), zero};
@@ -163,11 +161,6 @@ template <class KernelLaw, int d> void second_pass(SphFluid& f) {
     const double viscosity = viscous != nullptr ? viscous->viscosity : 0.0;
     if (viscosity == 0.0 && f.extras.diffusion == 0.0) return;
     const Pack diffusion = broadcast<Pack>(f.extras.diffusion * KernelLaw::sigma(d) / std::pow(f.h, d + 2));
-    const auto add_to = [](Field<double>& field, std::size_t cluster, Pack rate) {
-        Pack before;
-        std::memcpy(&before, &field[pack_width * cluster], sizeof before);
-        store(field, cluster, before + rate);
-    };
     parallel_chunks(
         f.clusters.count,
         [&](std::size_t begin, std::size_t end) {
@@ -177,8 +170,8 @@ template <class KernelLaw, int d> void second_pass(SphFluid& f) {
                 load_cluster(f.clusters, c, lanes);
                 const Pack over_rho = lanes[7] * broadcast<Pack>(viscosity / f.mass);
                 std::size_t axis = 0;
-                for_components<d>([&](const Pack& sum) { add_to(f.a[axis++], c, over_rho * sum); }, sums.laplacian);
-                add_to(f.drho, c, -diffusion * sums.diffusion);
+                for_components<d>([&](const Pack& sum) { add(f.a[axis++], c, over_rho * sum); }, sums.laplacian);
+                add(f.drho, c, -diffusion * sums.diffusion);
             }
         },
         16);

@@ -1,24 +1,15 @@
 // The hot loop: all terms of the equations of motion for eight particles at a time, in one pass over their neighbours.
 #pragma once
 
+#include "core/packed_field.hpp"
 #include "core/parallel.hpp"
 #include "sph/fluid.hpp"
 
 #include <cassert>
-#include <cstring>
 
 namespace plumb {
 
 namespace fluid_sweep {
-
-/// Loads eight records as eight lanes of every number: x y z p/rho^2 u v w V.
-inline void load_cluster(const FluidClusters& clusters, std::size_t cluster, Pack (&lanes)[8]) {
-    for (std::size_t lane = 0; lane < pack_width; ++lane)
-        std::memcpy(&lanes[lane],
-                    &clusters.records[static_cast<std::size_t>(clusters.record_of[pack_width * cluster + lane])],
-                    sizeof(Pack));
-    transpose(lanes);
-}
 
 template <int d, class T> inline Components<T, d> components(const T& x, const T& y, const T& z) {
     if constexpr (d == 3)
@@ -95,15 +86,6 @@ inline Pack* room_for_slopes(Field<Pack>& slopes, const FluidClusters& clusters,
     const std::size_t needed = clusters.near(cluster).size();
     if (slopes.size() < needed) slopes.resize(2 * needed);
     return slopes.data();
-}
-
-inline Pack load(const Field<double>& field, std::size_t cluster) {
-    Pack value;
-    std::memcpy(&value, &field[pack_width * cluster], sizeof value);
-    return value;
-}
-inline void store(Field<double>& field, std::size_t cluster, Pack value) {
-    std::memcpy(&field[pack_width * cluster], &value, sizeof value);
 }
 
 /// Accelerations and density rates of a cluster: its sums times `factor`, and the body force.

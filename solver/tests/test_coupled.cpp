@@ -13,6 +13,9 @@ TEST(Coupled, MomentumIsKept) {
     for (const Keys& keys :
          {Keys{}, Keys{{"time.grain_step", "3e-5"}}, Keys{{"coupling.exchange", "\"implicit\""}},
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"virtual_mass\"]"}},
+          Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"saffman_mei\"]"}},
+          Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"li_ahmadi\"]"},
+               {"time.grain_step", "3e-5"}},
           Keys{{"grains.motion", "\"block\""}}, Keys{{"coupling.gather_width", "{times_diameter = 1.5}"}}}) {
         SCOPED_TRACE(keys.empty() ? "standard" : keys.begin()->first + " = " + keys.begin()->second);
         Bench bench(keys);
@@ -23,6 +26,26 @@ TEST(Coupled, MomentumIsKept) {
         const double weight = 20.0 * 2e-4 * g.mass[0] * static_cast<double>(g.size()) * 9.81;
         EXPECT_LT((momentum(bench) - before).norm(), 1e-12 * weight);
     }
+}
+
+// Lift of the shear that is there, not of none or of its transpose: where the fluid's velocity is U sin(k y) along x, a
+// grain that lags it along x is lifted along y and nowhere else, towards the faster side.
+TEST(Coupled, ShearLiftsGrains) {
+    Bench bench(Keys{{"coupling.forces", "[\"pressure_gradient\", \"saffman_mei\"]"},
+                     {"coupling.mean_pressure_gradient", ""},
+                     {"domain.gravity", "[0.0, 0.0, 0.0]"},
+                     {"grains.arrange", "{law = \"single\", position = [0.8e-3, 0.1e-3, 0.8e-3]}"}});
+    stir(bench);
+    bench.grains().v[0] = Vec3::Zero(); // the fluid: about 2e-3 m/s sin(pi/8), growing with y
+    advance(bench.simulation, 1);
+    const FluidOnGrains& fluid = *bench.simulation.fluid;
+    const double shear = 2e-3 * 2.0 * std::numbers::pi / 1.6e-3 * std::cos(std::numbers::pi / 8.0);
+    const Eigen::Matrix3d gradient = fluid.at_grains.gradient[0];
+    EXPECT_GT(gradient(0, 1), 0.7 * shear); // smoothed: a kernel of variance s takes exp(-k^2 s/2), s < 0.4 h^2
+    EXPECT_LT(gradient(0, 1), shear);
+    EXPECT_LT(gradient.norm(), 1.05 * gradient(0, 1));
+    EXPECT_GT(bench.grains().v[0].y(), 0.0);
+    EXPECT_LT(std::abs(bench.grains().v[0].z()), 0.1 * bench.grains().v[0].y());
 }
 
 // A drag that pushes the fluid the wrong way or twice: the slip of a uniform lattice is that of the law.
@@ -65,7 +88,8 @@ TEST(Coupled, AnyLoadingIsStable) {
 }
 
 TEST(Coupled, SameBitsForAnyNumberOfThreads) {
-    Bench one, two, four;
+    const Keys lift{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"saffman_mei\"]"}};
+    Bench one(lift), two(lift), four(lift);
     const auto run = [](Bench& bench, int n) {
         const Threads threads(n);
         stir(bench);
@@ -100,8 +124,8 @@ TEST(Coupled, BadScenesAreInputErrors) {
     refused({{"coupling.direction", ""}}, {"coupling.direction: missing"});
     refused({{"coupling.fluid_mass", ""}}, {"coupling.fluid_mass: missing"});
     refused({{"coupling.drag", "\"darcy\""}}, {"coupling.drag", "darcy", "di_felice"});
-    refused({{"coupling.forces", "[\"saffman_mei\"]"}}, {"coupling.forces", "saffman_mei", "gradient"});
     refused({{"coupling.forces", "[\"buoyancy\"]"}}, {"coupling.mean_pressure_gradient", "pressure_gradient"});
+    refused({{"coupling.direction", "\"one_way\""}}, {"coupling.mean_pressure_gradient", "one_way", "vector"});
     refused({{"fluid.pressure", "\"full\""}}, {"coupling.forces", "buoyancy", "full"});
     refused({{"fluid.operators", "\"corrected\""}}, {"coupling.direction", "plain"});
     refused({{"time.grain_step", ""}}, {"time.grain_step: missing"});

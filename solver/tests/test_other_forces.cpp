@@ -47,6 +47,23 @@ TEST(OtherForces, BuoyancyBalancesTheWeightOfTheDisplacedFluid) {
     EXPECT_NEAR((force + 1000.0 * sphere_volume(1e-3) * g).norm(), 0.0, 1e-20);
 }
 
+// A share of a force that the fluid loses although it does not exert it, or keeps although it does: buoyancy is the
+// hydrostatic pressure's, V G a mean gradient's, and the rest of all forces the fluid's.
+TEST(OtherForces, WhatComesFromOutside) {
+    const Vec3 g(0.0, 0.0, -9.81), mean(3.0, 0.0, -700.0);
+    LocalFluid fluid = sheared(20.0);
+    fluid.acceleration = Vec3(1.0, -2.0, 3.0);
+    const LocalGrain grain = lagging(0.1);
+    const auto share = [&](const OtherForce& law) { return force_from_outside(law, fluid, grain, g, mean); };
+    EXPECT_EQ(share(Buoyancy{}), force_on_grain(Buoyancy{}, fluid, grain, g));
+    LocalFluid driven = fluid;
+    driven.acceleration -= mean / fluid.density;
+    const Vec3 by_gradient = PressureGradient{}(driven, grain, g) - PressureGradient{}(fluid, grain, g);
+    EXPECT_LT((share(PressureGradient{}) - by_gradient).norm(), 1e-12 * by_gradient.norm());
+    for (const OtherForce& law : {OtherForce{VirtualMass{}}, OtherForce{SaffmanMei{}}, OtherForce{LiAhmadi{}}})
+        EXPECT_EQ(share(law), Vec3(0.0, 0.0, 0.0)) << law_name(law);
+}
+
 // -u . grad u for Du/Dt, or a missing factor: a grain of fluid feels exactly the fluid's acceleration, with virtual
 // mass too.
 TEST(OtherForces, AGrainOfFluidFollowsTheFluid) {

@@ -6,6 +6,7 @@
 #include "fluid_fixtures.hpp"
 #include "sph/arrange_fluid.hpp"
 
+#include <functional>
 #include <numeric>
 
 using namespace plumb;
@@ -16,7 +17,7 @@ namespace {
 constexpr double spacing = 0.1;
 
 /// A box of 1.2 x 1.1 x 1.3 m of jittered particles, each with a velocity, an acceleration and a share of its own.
-SphFluid stirred(const std::array<bool, 3>& periodic) {
+SphFluid stirred(const std::array<bool, 3>& periodic, double jitter) {
     SphFluid f;
     f.dimensions = 3;
     f.domain.size = Vec3(1.2, 1.1, 1.3);
@@ -25,7 +26,7 @@ SphFluid stirred(const std::array<bool, 3>& periodic) {
     f.mass = 1000.0 * std::pow(spacing, 3);
     f.body_force = Vec3(0.1, -0.2, 0.3);
     f.clusters.reach = 2.0 * f.h, f.clusters.skin = 0.25 * spacing, f.clusters.images = 0.4;
-    fill_box(f, 0.2, 3);
+    fill_box(f, jitter, 3);
     Random random(5);
     for (std::size_t c = 0; c < 3; ++c) f.a[c].assign(f.slots(), 0.0);
     f.share.assign(f.slots(), 1.0);
@@ -57,8 +58,15 @@ struct Setting {
     GatheredFluid at;
 };
 
-Setting setting(const std::array<bool, 3>& periodic, CouplingWidths widths, std::size_t count = 60) {
-    Setting s{stirred(periodic), {}, {}, {}, {}};
+/// `lattice` gives another velocity to particles on a lattice of one density.
+Setting setting(const std::array<bool, 3>& periodic, CouplingWidths widths, std::size_t count = 60,
+                const std::function<void(SphFluid&)>& lattice = {}) {
+    Setting s{stirred(periodic, lattice ? 0.0 : 0.2), {}, {}, {}, {}};
+    if (lattice) {
+        std::fill(s.fluid.rho.begin(), s.fluid.rho.end(), s.fluid.density);
+        lattice(s.fluid);
+    }
+    s.at.wants_gradient = true;
     s.weights.kernel = WendlandC2{};
     s.weights.h = widths;
     Random random(7);
@@ -144,6 +152,52 @@ TEST(Weights, GatheredFieldsAreThoseOfAllPairs) {
             ASSERT_NEAR(s.at.load[j], of_load / total, 1e-12 * (1.0 + of_load / total));
         }
     }
+}
+
+// A transposed or half gradient, its scale, the wrong kernel's width: it is that of the gathered velocity as a function
+// of the place, by differences. Their error is delta^2/6 times a third derivative of 15/h^3 and rounding over delta.
+TEST(Weights, GradientIsThatOfTheGatheredVelocity) {
+    const Setting s = setting({true, true, true}, different);
+    const auto velocity_at = [&](const Vec3& x) {
+        double total = 0.0;
+        Vec3 u = Vec3::Zero();
+        for_each_particle(s.fluid, [&](std::size_t k, const Vec3& at, double volume) {
+            const double weight = volume * kernel(s, at, x, different.gather);
+            total += weight;
+            u += weight * Vec3(s.fluid.v[0][k], s.fluid.v[1][k], s.fluid.v[2][k]);
+        });
+        return Vec3(u / total);
+    };
+    const double delta = 1e-5;
+    for (std::size_t j = 0; j < s.grains.size(); ++j)
+        for (Eigen::Index c = 0; c < 3; ++c) {
+            const Vec3 step = delta * Vec3::Unit(c);
+            const Vec3 slope = (velocity_at(s.grains.x[j] + step) - velocity_at(s.grains.x[j] - step)) / (2.0 * delta);
+            ASSERT_LT((s.at.gradient[j].col(c) - slope).norm(), 1e-6);
+        }
+}
+
+// A gradient that is not that of a linear flow. By Poisson's summation the sum over a cubic lattice differs from the
+// integral by the kernel's transform What(K) at the lattice's waves: of What and K What' with K h = 4 pi (h = 2
+// spacings) 6.0e-5 and 1.8e-4 at the six nearest waves, 1.1e-5 and 1.5e-4 at the twelve next and less beyond; 4.1e-3 in
+// all if every wave were in phase and along every axis.
+TEST(Weights, GradientOfAShearOnALattice) {
+    Eigen::Matrix3d shear;
+    shear << 1.0, -2.0, 3.0, 0.5, -1.5, 2.5, -0.7, 4.0, 0.3;
+    const Setting s = setting({true, true, true}, {0.2, 0.2, 0.2}, 60, [&](SphFluid& f) {
+        for (std::size_t k = 0; k < f.slots(); ++k) {
+            const Vec3 v = shear * Vec3(f.x[0][k], f.x[1][k], f.x[2][k]);
+            for (std::size_t c = 0; c < 3; ++c) f.v[c][k] = v[static_cast<Eigen::Index>(c)];
+        }
+    });
+    int inside = 0;
+    for (std::size_t j = 0; j < s.grains.size(); ++j) {
+        const Vec3 x = s.fluid.domain.wrapped(s.grains.x[j]), beyond = s.fluid.domain.size - x;
+        if (x.minCoeff() < 0.4 || beyond.minCoeff() < 0.4) continue; // the shear jumps at the sides
+        ++inside;
+        EXPECT_LT((s.at.gradient[j] - shear).norm(), 4.1e-3 * shear.norm());
+    }
+    EXPECT_GT(inside, 2);
 }
 
 // Forces that are lost at a side, or spread with weights that do not sum to one.

@@ -47,9 +47,9 @@ class Setting(NamedTuple):
 
 def setting(scene):
     """Of the scene as it is meant: direction, coupling width, drag law and viscous operator are the case's, which a twin may break.
-    Where the weight is balanced the run is meant to be two-way."""
+    Where a gradient balances the weight the run is meant to be two-way."""
     fluid, grain = scene["fluid"], scene["grains"]
-    return Setting(scene["coupling"]["mean_pressure_gradient"] == "balances_weight",
+    return Setting(scene["coupling"]["mean_pressure_gradient"] != [0.0, 0.0, 0.0],
                    scene["coupling"].get("self_disturbance", "none") != "none",
                    fluid["density"], fluid["viscosity"], grain["density"], grain["diameter"], fluid["kernel"],
                    fluid["smoothing"] * fluid["spacing"], fluid["sound_speed"], tuple(scene["domain"]["size"]), scene["time"]["end"])
