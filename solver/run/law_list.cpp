@@ -30,6 +30,7 @@ std::vector<LawFamily> law_families() {
                                     {"coupling.basset", law_entries<HistoryForce>()},
                                     {"coupling.exchange", law_entries<Exchange>()},
                                     {"coupling.porosity", law_entries<PrescribedPorosity>()},
+                                    {"coupling.porosity (sph)", law_entries<PorosityLaw>()},
                                     {"probe.quantity", law_entries<ProbeQuantity>()}};
     return families;
 }

@@ -14,7 +14,7 @@ struct Coupling {
     Weights weights;
     bool two_way = true;          // false: the grains feel the fluid, which feels their porosity only
     std::int64_t grain_steps = 1; // of the grains in one of the fluid
-    std::int64_t clamped = 0;     // porosities below the densest packing, set to it
+    std::int64_t clamped = 0;     // porosities below the densest packing, or above 1 at a grain, set to it
     GrainPlaces places;           // by id, at the middle of the present step
     std::vector<double> mass;     // of the grains by id [kg]
 };

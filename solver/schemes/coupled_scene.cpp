@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace plumb {
 
@@ -14,6 +15,15 @@ double largest_diameter(const GrainSystem& system) {
     double d = 0.0;
     for (const double r : system.grains.radius) d = std::max(d, 2.0 * r);
     return d;
+}
+
+/// A law that differs from grain to grain keeps a table for every size.
+void check_number_of_sizes(const Table& coupling, const GrainSystem& system) {
+    constexpr std::size_t most = 256; // 4 MB of tables, some seconds to make them
+    const std::set<double> sizes(system.grains.radius.begin(), system.grains.radius.end());
+    if (sizes.size() > most)
+        coupling.fail("porosity",
+                      fmt::format("makes a table for every diameter: {} are too many, at most {}", sizes.size(), most));
 }
 
 /// A smoothing length [m], or {times_diameter = x} of the largest grain, or {times_smoothing = x} of the fluid's.
@@ -55,24 +65,28 @@ Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem
     Coupling c;
     c.two_way = coupling.choice("direction", {"two_way", "one_way"}) == "two_way";
     c.weights.kernel = make_family<Kernel>(coupling.law("kernel"));
-    const double d = largest_diameter(grains), spread = read_width(coupling, "kernel_width", fluid, d);
+    if (coupling.has("porosity")) c.weights.porosity = make_family<PorosityLaw>(coupling.law("porosity"));
+    if (coupling.has("own_volume"))
+        c.weights.own_volume = coupling.choice("own_volume", {"included", "excluded"}) == "included";
+    if (by_diameter(c.weights.porosity)) check_number_of_sizes(coupling, grains);
+    c.weights.largest_diameter = largest_diameter(grains);
+    const double d = c.weights.largest_diameter, spread = read_width(coupling, "kernel_width", fluid, d);
     const auto other = [&](const char* key) {
         return coupling.has(key) ? read_width(coupling, key, fluid, d) : spread;
     };
     c.weights.h = {spread, other("gather_width"), other("porosity_width")};
     const double narrowest = std::min({c.weights.h.spread, c.weights.h.gather, c.weights.h.porosity});
-    const double reach = support(c.weights.kernel) * narrowest;
-    if (reach < fluid.spacing)
+    const double least = support(c.weights.kernel) * narrowest;
+    if (least < fluid.spacing)
         coupling.fail("kernel_width",
                       fmt::format("the kernel reaches {:.4g} m, less than the fluid's spacing of {:.4g} m: a grain may "
                                   "meet no particle",
-                                  reach, fluid.spacing));
-    if (reach < 0.5 * d)
+                                  least, fluid.spacing));
+    if (least < 0.5 * d)
         coupling.fail(
             "kernel_width",
-            fmt::format("the kernel reaches {:.4g} m, less than the radius of a grain of {:.4g} m", reach, d));
-    check_periodic_sides(fluid.domain, support(c.weights.kernel) * c.weights.h.greatest() + fluid.clusters.skin,
-                         coupling.file());
+            fmt::format("the kernel reaches {:.4g} m, less than the radius of a grain of {:.4g} m", least, d));
+    check_periodic_sides(fluid.domain, reach(c.weights) + fluid.clusters.skin, coupling.file());
     return c;
 }
 
