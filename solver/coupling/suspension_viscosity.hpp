@@ -1,5 +1,6 @@
 // Closures for the viscosity of a fluid full of grains: what the averaged equations call the effective viscosity,
-// mu_eff = ratio(eps) mu. The scheme of Robinson, Luding & Ramaioli has none; the mixture theories it is compared with do.
+// mu_eff = ratio(eps) mu. The scheme of Robinson, Luding & Ramaioli has none; the mixture theories it is compared with
+// do.
 //
 // To add one: write the struct, name it in SuspensionViscosity, and its row in the README.
 #pragma once
@@ -39,8 +40,8 @@ struct KriegerDougherty {
 
 using SuspensionViscosity = std::variant<PureFluidViscosity, KriegerDougherty>;
 
-/// Adds to the accelerations what the grains add to the friction of Morris' term, mu (ratio_a + ratio_b - 2) in place of
-/// 2 mu, for the state in the records and the porosity of now; pairs with particles of walls count ratio_a twice.
+/// Adds to the accelerations what the grains add to the friction of Morris' term, mu (ratio_a + ratio_b - 2) in place
+/// of 2 mu, for the state in the records and the porosity of now; pairs with particles of walls count ratio_a twice.
 /// Returns how many particles were at the greatest ratio.
 std::int64_t add_suspension_viscosity(SphFluid& fluid, const Weights& weights, const SuspensionViscosity& law);
 

@@ -34,14 +34,14 @@ template <class Record>
     return {dx, square_root(dx[0] * dx[0] + dx[1] * dx[1] + dx[2] * dx[2])};
 }
 
-/// Calls body(apart, record) for the grains near a cluster of the fluid.
+/// Calls body(apart, record, its number) for the grains that `lists` name near a cluster of the fluid.
 template <class Body>
-[[gnu::always_inline]] inline void for_grains_near(const Weights& w, const SphFluid& f, std::size_t cluster,
-                                                   Body&& body) {
+[[gnu::always_inline]] inline void for_grains_near(const Weights& w, const NeighbourLists& lists, const SphFluid& f,
+                                                   std::size_t cluster, Body&& body) {
     const Pack x = load(f.x[0], cluster), y = load(f.x[1], cluster), z = load(f.x[2], cluster);
-    for (const std::int32_t record : w.grains_near.near(cluster)) {
-        const CouplingRecord& j = w.records[static_cast<std::size_t>(record)];
-        body(apart(x, y, z, j), j);
+    for (const std::int32_t record : lists.near(cluster)) {
+        const auto r = static_cast<std::size_t>(record);
+        body(apart(x, y, z, w.records[r]), w.records[r], r);
     }
 }
 

@@ -3,16 +3,12 @@
 #include "coupling/weight_loops.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
 namespace plumb {
 
 namespace {
-
-const double least_porosity = 1.0 - std::numbers::pi / std::sqrt(18.0); // densest packing of equal spheres
 
 Pack inverse(double h) { return broadcast<Pack>(1.0 / h); }
 
@@ -86,9 +82,10 @@ template <class Law> void spread_load(Weights& w, const SphFluid& f) {
     w.load.resize(f.slots());
     for_each_group(f.clusters.count, [&](std::size_t cluster) {
         Pack sum{};
-        for_grains_near(w, f, cluster, [&](const Apart& apart, const CouplingRecord& j) {
-            sum += Law::w(apart.r * own) * broadcast<Pack>(j.mass);
-        });
+        for_grains_near(w, w.grains_near, f, cluster,
+                        [&](const Apart& apart, const CouplingRecord& j, std::size_t /*record*/) {
+                            sum += Law::w(apart.r * own) * broadcast<Pack>(j.mass);
+                        });
         store(w.load, cluster, sum * volumes(f, cluster) / (broadcast<Pack>(f.mass) * load(f.share, cluster)));
     });
 }
@@ -118,6 +115,18 @@ template <class Value> void write_records(Weights& w, const Domain& domain, Valu
     update_images(w.grains, w.records, domain);
 }
 
+/// Numbers of the tables by record.
+void list_tables(Weights& w) {
+    w.table_of.assign(w.tables.size() > 0 ? w.records.size() : 0, 0);
+    if (w.table_of.empty()) return;
+    for (std::size_t k = 0; k < w.id.size(); ++k)
+        if (w.id[k] >= 0)
+            w.table_of[static_cast<std::size_t>(w.grains.record_of[k])] =
+                w.table_of_grain[static_cast<std::size_t>(w.id[k])];
+    for (std::size_t r = 0; r < w.table_of.size(); ++r)
+        w.table_of[r] = w.table_of[static_cast<std::size_t>(w.grains.image_of[r])];
+}
+
 } // namespace
 
 bool outdated(const Weights& w, const Domain& domain, const GrainPlaces& grains) {
@@ -140,20 +149,26 @@ void renew_weights(Weights& w, const SphFluid& f, const GrainPlaces& grains) {
         for (std::size_t c = 0; c < 3; ++c) x[c][j] = w.x_listed[j][static_cast<Eigen::Index>(c)];
         id[j] = static_cast<std::int32_t>(j);
     }
-    const double reach = support(w.kernel) * w.h.greatest();
-    assert(std::max(f.clusters.reach, f.clusters.images) >= reach);
-    w.grains.reach = reach;
+    const double furthest = reach(w), skin = f.clusters.skin;
+    assert(std::max(f.clusters.reach, f.clusters.images) >= furthest);
+    w.grains.reach = furthest;
     w.grains.skin = f.clusters.skin;
     const double box = f.domain.size.prod();
     const double spacing = std::max(f.spacing, std::cbrt(box / static_cast<double>(std::max<std::size_t>(n, 1))));
-    const ClusterOrder order = arrange(w.grains, {x, id, none}, f.domain, std::min(spacing, reach));
+    const ClusterOrder order = arrange(w.grains, {x, id, none}, f.domain, std::min(spacing, furthest));
     renew_size(w.records, w.grains.grid.records());
     w.id.resize(order.from.size());
     for (std::size_t k = 0; k < w.id.size(); ++k) w.id[k] = order.copy[k] != 0 ? -1 : order.from[k];
     w.sum.assign(w.id.size(), 0.0);
     w.gather_sum.assign(w.id.size(), 0.0);
-    list_records(w.fluid_near, f.clusters.grid, lane_places(w.grains, 3), 3, reach + w.grains.skin, f.clusters.passive);
-    list_records(w.grains_near, w.grains.grid, lane_places(f.clusters, 3), 3, reach + w.grains.skin, {});
+    if (w.table_of_grain.size() != n) tabulate_porosity(w, grains);
+    list_tables(w);
+    const double exchange = exchange_reach(w) + skin, porosity = porosity_reach(w) + skin;
+    const std::array<std::vector<double>, 3> fluid_places = lane_places(f.clusters, 3);
+    list_records(w.fluid_near, f.clusters.grid, lane_places(w.grains, 3), 3, exchange, f.clusters.passive);
+    list_records(w.grains_near, w.grains.grid, fluid_places, 3, exchange, {});
+    w.porosity_near.parts.clear();
+    if (porosity > exchange) list_records(w.porosity_near, w.grains.grid, fluid_places, 3, porosity, {});
     w.slot_of_record.assign(f.clusters.records.size(), -1);
     for (std::size_t k = 0; k < f.slots(); ++k)
         if (f.id[k] >= 0)
@@ -175,30 +190,7 @@ void place_grains(Weights& w, const Domain& domain, const GrainPlaces& grains) {
     update_images(w.grains, w.records, domain);
 }
 
-std::int64_t set_porosity(SphFluid& f, const Weights& w) {
-    f.eps.resize(f.slots());
-    std::atomic<std::int64_t> clamped{0};
-    with_kernel(w.kernel, [&](const auto& law) {
-        using Law = std::decay_t<decltype(law)>;
-        const Pack own = inverse(w.h.porosity);
-        const double factor = Law::sigma(3) / (w.h.porosity * w.h.porosity * w.h.porosity);
-        for_each_group(f.clusters.count, [&](std::size_t cluster) {
-            Pack sum{};
-            for_grains_near(w, f, cluster, [&](const Apart& apart, const CouplingRecord& j) {
-                sum += Law::w(apart.r * own) * broadcast<Pack>(j.volume);
-            });
-            for (std::size_t lane = 0; lane < pack_width; ++lane) {
-                const std::size_t slot = pack_width * cluster + lane;
-                const double eps = 1.0 - factor * sum[static_cast<int>(lane)];
-                if (eps < least_porosity && f.id[slot] >= 0) ++clamped;
-                f.eps[slot] = std::max(eps, least_porosity);
-            }
-        });
-    });
-    return clamped;
-}
-
-void gather(Weights& w, const SphFluid& f, const std::vector<double>& mass, bool with_load, GatheredFluid& at) {
+std::int64_t gather(Weights& w, const SphFluid& f, const std::vector<double>& mass, bool with_load, GatheredFluid& at) {
     const std::size_t n = mass.size();
     at.u.resize(n), at.a.resize(n), at.stress.resize(n), at.eps.resize(n), at.load.assign(n, 0.0);
     with_kernel(w.kernel, [&](const auto& law) {
@@ -228,6 +220,8 @@ void gather(Weights& w, const SphFluid& f, const std::vector<double>& mass, bool
         spread_load<Law>(w, f);
         gather_load<Law>(w, f, at);
     });
+    if (!w.own_volume) take_out_own_volume(w, f, at.eps);
+    return bound_porosity(at.eps);
 }
 
 void spread(SphFluid& f, Weights& w, const std::vector<Vec3>& force) {
@@ -240,12 +234,13 @@ void spread(SphFluid& f, Weights& w, const std::vector<Vec3>& force) {
         const Pack own = inverse(w.h.spread);
         for_each_group(f.clusters.count, [&](std::size_t cluster) {
             std::array<Pack, 3> sum{};
-            for_grains_near(w, f, cluster, [&](const Apart& apart, const CouplingRecord& j) {
-                const Pack weight = Law::w(apart.r * own);
-                sum[0] += weight * broadcast<Pack>(j.fx);
-                sum[1] += weight * broadcast<Pack>(j.fy);
-                sum[2] += weight * broadcast<Pack>(j.fz);
-            });
+            for_grains_near(w, w.grains_near, f, cluster,
+                            [&](const Apart& apart, const CouplingRecord& j, std::size_t /*record*/) {
+                                const Pack weight = Law::w(apart.r * own);
+                                sum[0] += weight * broadcast<Pack>(j.fx);
+                                sum[1] += weight * broadcast<Pack>(j.fy);
+                                sum[2] += weight * broadcast<Pack>(j.fz);
+                            });
             const Pack factor = volumes(f, cluster) / (broadcast<Pack>(f.mass) * load(f.share, cluster));
             for (std::size_t c = 0; c < 3; ++c) add(f.a[c], cluster, factor * sum[c]);
         });

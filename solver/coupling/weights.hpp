@@ -7,6 +7,8 @@
 #pragma once
 
 #include "core/vec.hpp"
+#include "coupling/porosity_laws.hpp"
+#include "coupling/radial_table.hpp"
 #include "sph/fluid.hpp"
 
 #include <vector>
@@ -16,7 +18,6 @@ namespace plumb {
 /// Smoothing lengths [m] of the coupling's kernels.
 struct CouplingWidths {
     double spread = 0.0, gather = 0.0, porosity = 0.0;
-    double greatest() const { return std::max({spread, gather, porosity}); }
 };
 
 /// Places and sizes of all grains, by id.
@@ -37,15 +38,24 @@ struct alignas(64) CouplingRecord {
 struct Weights {
     Kernel kernel;
     CouplingWidths h;
+    PorosityLaw porosity;          // what a grain takes from the fluid fraction around it
+    bool own_volume = true;        // of a grain in the fluid fraction gathered at it
+    double largest_diameter = 0.0; // [m]
 
     Clusters grains; // in groups of eight, as the fluid's particles are
     Field<CouplingRecord> records;
     std::vector<std::int32_t> id;             // [slots] of the grain, -1 in the copies that fill a group
     std::vector<Vec3> x_listed;               // by id: where the grains were when the lists were built, in the box [m]
     NeighbourLists fluid_near, grains_near;   // records of the fluid near groups of grains, and the other way round
+    NeighbourLists porosity_near;             // records of grains near groups of the fluid, if that reaches further
     std::vector<std::int32_t> slot_of_record; // of the fluid's particle behind a record
     Field<double> sum, gather_sum;            // S_j of the spreading and of the gathering kernel, by slot
     Field<double> load;                       // mass of grains over mass of fluid, by slot of the fluid
+    RadialTables tables;                      // of the porosity's law, but for `kernel`
+    std::vector<std::int32_t> table_of_grain; // by id
+    std::vector<std::int32_t> table_of;       // [records]; empty without tables
+
+    const NeighbourLists& porosity_lists() const { return porosity_near.parts.empty() ? grains_near : porosity_near; }
 };
 
 /// What the fluid is at the grains, by id.
@@ -60,6 +70,11 @@ struct GatheredFluid {
     std::vector<Eigen::Matrix3d> gradient; // (i, j) = d u_i/d x_j of the velocity at the middle of the step [1/s]
 };
 
+/// How far the kernels of P reach, and how far a grain's part in the fluid fraction does [m].
+inline double exchange_reach(const Weights& w) { return support(w.kernel) * std::max(w.h.spread, w.h.gather); }
+double porosity_reach(const Weights& weights);
+inline double reach(const Weights& w) { return std::max(exchange_reach(w), porosity_reach(w)); }
+
 /// Whether some grain has moved so far that the lists may miss a neighbour.
 bool outdated(const Weights& weights, const Domain& domain, const GrainPlaces& grains);
 
@@ -70,13 +85,24 @@ void renew_weights(Weights& weights, const SphFluid& fluid, const GrainPlaces& g
 /// Puts the grains where they are now.
 void place_grains(Weights& weights, const Domain& domain, const GrainPlaces& grains);
 
-/// eps_a = 1 - sum_j V_j W(|x_a - x_j|, h) at every particle of the fluid; returns how many were below what the densest
+/// Tables of the porosity's law for all grains, whose sizes never change.
+void tabulate_porosity(Weights& weights, const GrainPlaces& grains);
+
+/// eps_a = 1 - sum_j V_j G(|x_a - x_j|) at every particle of the fluid; returns how many were below what the densest
 /// packing of equal spheres leaves, 1 - pi/sqrt 18, and were set to it.
 std::int64_t set_porosity(SphFluid& fluid, const Weights& weights);
 
-/// The fluid at the grains, and the S_j. `mass` of all grains by id [kg], for `load`, if it is wanted.
-void gather(Weights& weights, const SphFluid& fluid, const std::vector<double>& mass, bool with_load,
-            GatheredFluid& at_grains);
+/// Takes out of the fluid fractions gathered at the grains what each has taken from its own: V_j sum_a P_aj G(|x_a -
+/// x_j|). The sums of weights are there.
+void take_out_own_volume(const Weights& weights, const SphFluid& fluid, std::vector<double>& eps);
+
+/// Sets fluid fractions above 1 to it; returns how many were, by more than rounding.
+std::int64_t bound_porosity(std::vector<double>& eps);
+
+/// The fluid at the grains, and the S_j. `mass` of all grains by id [kg], for `load`, if it is wanted. Returns how many
+/// fluid fractions were above 1 and were set to it.
+std::int64_t gather(Weights& weights, const SphFluid& fluid, const std::vector<double>& mass, bool with_load,
+                    GatheredFluid& at_grains);
 
 /// Adds the accelerations by forces on the fluid that are given by the id of the grain they belong to [N].
 void spread(SphFluid& fluid, Weights& weights, const std::vector<Vec3>& force);

@@ -13,7 +13,7 @@ namespace plumb {
 
 namespace {
 
-constexpr std::int64_t format_version = 3; // to be raised with every change of the layout or of what it means
+constexpr std::int64_t format_version = 4; // to be raised with every change of the layout or of what it means
 constexpr const char* format_name = "plumb checkpoint";
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "fields of vectors are written as they lie in memory");
@@ -296,7 +296,8 @@ void Loader::load_sph(SphFluid& f) const {
 
 void Loader::load_coupling(Coupling& coupling, const SphFluid& fluid) const {
     read_field("coupling/x_listed", coupling.places.x, coupling.places.size());
-    coupling.clamped = integers("coupling/clamped", 1)[0];
+    const std::vector<std::int64_t> counts = integers("coupling/counts", 2);
+    coupling.clamped = counts[0], coupling.at_greatest = counts[1];
     if (coupling.self) {
         coupling.self->memory = file_.doubles("coupling/wakes");
         demand(coupling.self->memory.size() == coupling.places.size() * wake_size(), "coupling/wakes");
@@ -371,7 +372,8 @@ void save_checkpoint(const std::string& path, const Run& run, const Cost& cost) 
     if (run.simulation.sph) write_sph(file, *run.simulation.sph);
     if (run.simulation.coupling) {
         write_field(file, "coupling/x_listed", run.simulation.coupling->weights.x_listed);
-        file.write("coupling/clamped", std::vector<std::int64_t>{run.simulation.coupling->clamped});
+        file.write("coupling/counts",
+                   std::vector<std::int64_t>{run.simulation.coupling->clamped, run.simulation.coupling->at_greatest});
         if (run.simulation.coupling->self) file.write("coupling/wakes", run.simulation.coupling->self->memory);
     }
     write_outputs(file, run);

@@ -84,8 +84,11 @@ std::string provenance_json(const Scene& scene, const Simulation& simulation, co
         j["coupling"] = {{"kernel_width", c.weights.h.spread},
                          {"gather_width", c.weights.h.gather},
                          {"porosity_width", c.weights.h.porosity},
+                         {"porosity", law_name(c.weights.porosity)},
+                         {"own_volume", c.weights.own_volume ? "included" : "excluded"},
                          {"grain_steps", c.grain_steps},
                          {"clamped_porosities", c.clamped},
+                         {"at_greatest_viscosity", c.at_greatest},
                          {"mean_pressure_gradient", {gradient[0], gradient[1], gradient[2]}}};
     }
     if (simulation.sph) {

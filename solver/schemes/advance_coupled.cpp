@@ -77,7 +77,7 @@ void remember_own(Coupling& c, const FluidOnGrains& f, const GrainSystem& system
 
 void couple(Coupling& c, SphFluid& fluid, const GrainSystem& grains, bool displaced) {
     fluid.share.assign(fluid.slots(), 1.0);
-    fluid.clusters.images = support(c.weights.kernel) * c.weights.h.greatest();
+    fluid.clusters.images = reach(c.weights);
     renew_lists(fluid);
     set_places(c, grains, 0.0);
     find_porosity(c, fluid, true);
@@ -90,7 +90,8 @@ void advance_coupled(Coupling& c, SphFluid& fluid, FluidOnGrains& at_grains, Gra
     set_places(c, grains, 0.5 * dt);
     find_porosity(c, fluid, new_lists);
     evaluate_middle(fluid, dt, step);
-    gather(c.weights, fluid, c.mass, c.two_way, at_grains.at_grains);
+    c.at_greatest += add_suspension_viscosity(fluid, c.weights, c.viscosity);
+    c.clamped += gather(c.weights, fluid, c.mass, c.two_way, at_grains.at_grains);
     take_out_own(c, grains, at_grains.at_grains);
 
     const std::int64_t n = c.grain_steps;

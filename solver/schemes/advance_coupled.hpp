@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupling/self_disturbance.hpp"
+#include "coupling/suspension_viscosity.hpp"
 #include "coupling/weights.hpp"
 #include "dem/grain_system.hpp"
 #include "schemes/fluid_on_grains.hpp"
@@ -15,9 +16,11 @@ namespace plumb {
 struct Coupling {
     Weights weights;
     std::optional<SelfDisturbance> self; // taken out of what the grains gather
+    SuspensionViscosity viscosity;       // of the fluid among the grains
+    std::int64_t at_greatest = 0;        // particles whose viscosity was at the law's greatest, over all steps
     bool two_way = true;                 // false: the grains feel the fluid, which feels their porosity only
     std::int64_t grain_steps = 1;        // of the grains in one of the fluid
-    std::int64_t clamped = 0;            // porosities below the densest packing, set to it
+    std::int64_t clamped = 0;            // porosities below the densest packing, or above 1 at a grain, set to it
     GrainPlaces places;                  // by id, at the middle of the present step
     std::vector<double> mass;            // of the grains by id [kg]
     std::vector<Vec3> velocity;          // of the grains by id, at the start of the present step [m/s]; for `self`

@@ -1,10 +1,13 @@
 #include "schemes/coupled_scene.hpp"
 
+#include "schemes/sph_scene.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace plumb {
 
@@ -14,6 +17,15 @@ double largest_diameter(const GrainSystem& system) {
     double d = 0.0;
     for (const double r : system.grains.radius) d = std::max(d, 2.0 * r);
     return d;
+}
+
+/// A law that differs from grain to grain keeps a table for every size.
+void check_number_of_sizes(const Table& coupling, const GrainSystem& system) {
+    constexpr std::size_t most = 256; // 4 MB of tables, some seconds to make them
+    const std::set<double> sizes(system.grains.radius.begin(), system.grains.radius.end());
+    if (sizes.size() > most)
+        coupling.fail("porosity",
+                      fmt::format("makes a table for every diameter: {} are too many, at most {}", sizes.size(), most));
 }
 
 /// A smoothing length [m], or {times_diameter = x} of the largest grain, or {times_smoothing = x} of the fluid's.
@@ -31,6 +43,7 @@ void read_self_disturbance(Table& coupling, Coupling& c, const SphFluid& fluid, 
     const auto law = make_family<SelfDisturbanceLaw>(coupling.law(key));
     const auto* theory = std::get_if<OseenBrinkman>(&law);
     if (theory == nullptr) return;
+    if (!c.weights.own_volume) coupling.fail("own_volume", "\"excluded\" is part of the self-disturbance already");
     if (!c.two_way) coupling.fail(key, "grains that do not push the fluid have no wake to take out");
     if (std::holds_alternative<Inviscid>(fluid.viscous_term))
         coupling.fail(key, "the theory needs a viscous term in the fluid");
@@ -38,8 +51,17 @@ void read_self_disturbance(Table& coupling, Coupling& c, const SphFluid& fluid, 
     if (!std::holds_alternative<LoneGrain>(theory->structure) &&
         std::any_of(r.begin(), r.end(), [&](double one) { return one != r.front(); }))
         coupling.fail(key, "a structure factor is that of equal grains");
-    c.self = self_disturbance(*theory, fluid, c.weights.kernel, c.weights.h, largest_diameter(grains));
+    c.self = self_disturbance(*theory, fluid, c.weights, largest_diameter(grains));
     c.self->memory.assign(r.size() * wake_size(), 0.0);
+}
+
+/// The closure for the fluid's viscosity among the grains, if the scene names one.
+void read_suspension_viscosity(Table& coupling, Coupling& c, const SphFluid& fluid) {
+    const char* const key = "suspension_viscosity";
+    if (!coupling.has(key)) return;
+    c.viscosity = make_family<SuspensionViscosity>(coupling.law(key));
+    if (!std::holds_alternative<PureFluidViscosity>(c.viscosity) && !std::holds_alternative<Morris>(fluid.viscous_term))
+        coupling.fail(key, "needs fluid.viscous_term = \"morris\"");
 }
 
 /// All weight, less what carries it from outside, over the volume of what feels the gradient [Pa/m].
@@ -73,25 +95,30 @@ Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem
     Coupling c;
     c.two_way = coupling.choice("direction", {"two_way", "one_way"}) == "two_way";
     c.weights.kernel = make_family<Kernel>(coupling.law("kernel"));
-    const double d = largest_diameter(grains), spread = read_width(coupling, "kernel_width", fluid, d);
+    if (coupling.has("porosity")) c.weights.porosity = make_family<PorosityLaw>(coupling.law("porosity"));
+    if (coupling.has("own_volume"))
+        c.weights.own_volume = coupling.choice("own_volume", {"included", "excluded"}) == "included";
+    if (by_diameter(c.weights.porosity)) check_number_of_sizes(coupling, grains);
+    c.weights.largest_diameter = largest_diameter(grains);
+    const double d = c.weights.largest_diameter, spread = read_width(coupling, "kernel_width", fluid, d);
     const auto other = [&](const char* key) {
         return coupling.has(key) ? read_width(coupling, key, fluid, d) : spread;
     };
     c.weights.h = {spread, other("gather_width"), other("porosity_width")};
     const double narrowest = std::min({c.weights.h.spread, c.weights.h.gather, c.weights.h.porosity});
-    const double reach = support(c.weights.kernel) * narrowest;
-    if (reach < fluid.spacing)
+    const double least = support(c.weights.kernel) * narrowest;
+    if (least < fluid.spacing)
         coupling.fail("kernel_width",
                       fmt::format("the kernel reaches {:.4g} m, less than the fluid's spacing of {:.4g} m: a grain may "
                                   "meet no particle",
-                                  reach, fluid.spacing));
-    if (reach < 0.5 * d)
+                                  least, fluid.spacing));
+    if (least < 0.5 * d)
         coupling.fail(
             "kernel_width",
-            fmt::format("the kernel reaches {:.4g} m, less than the radius of a grain of {:.4g} m", reach, d));
+            fmt::format("the kernel reaches {:.4g} m, less than the radius of a grain of {:.4g} m", least, d));
     read_self_disturbance(coupling, c, fluid, grains);
-    check_periodic_sides(fluid.domain, support(c.weights.kernel) * c.weights.h.greatest() + fluid.clusters.skin,
-                         coupling.file());
+    read_suspension_viscosity(coupling, c, fluid);
+    check_periodic_sides(fluid.domain, reach(c.weights) + fluid.clusters.skin, coupling.file());
     return c;
 }
 
@@ -129,6 +156,14 @@ void drive(Table& coupling, SphFluid& fluid, FluidOnGrains& on_grains, const Cou
         on_grains.mean_gradient = coupling.components("mean_pressure_gradient", 3);
     }
     fluid.body_force -= on_grains.mean_gradient / fluid.density;
+}
+
+std::vector<StepLimit> coupled_limits(const SphFluid& fluid, const Coupling& coupling) {
+    std::vector<StepLimit> limits = fluid_limits(fluid);
+    const double ratio = std::visit([](const auto& law) { return law.greatest(); }, coupling.viscosity);
+    for (StepLimit& limit : limits)
+        if (limit.name == "viscous") limit.seconds /= ratio;
+    return limits;
 }
 
 std::int64_t grain_steps(Table& time, double dt, const std::vector<StepLimit>& limits) {

@@ -179,7 +179,7 @@ void make_coupled(Table& root, Simulation& s) {
     s.fluid = fluid_on_grains(coupling, *s.sph);
     couple(*s.coupling, *s.sph, s.grains, coupling.choice("fluid_mass", {"displaced", "pure"}) == "displaced");
     drive(coupling, *s.sph, *s.fluid, *s.coupling, s.grains);
-    s.timing = timing(time, fluid_limits(*s.sph), probe_intervals(root));
+    s.timing = timing(time, coupled_limits(*s.sph, *s.coupling), probe_intervals(root));
     s.coupling->grain_steps = grain_steps(time, s.timing.dt, grain_limits(s.grains, s.sph->sound_speed * 0.1));
     set_inertia(*s.fluid, s.grains, s.timing.dt);
     start(*s.sph);

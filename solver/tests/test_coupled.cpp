@@ -16,6 +16,8 @@ TEST(Coupled, MomentumIsKept) {
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"saffman_mei\"]"}},
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"li_ahmadi\"]"},
                {"time.grain_step", "3e-5"}},
+          Keys{{"coupling.porosity", "\"overlap\""}, {"coupling.own_volume", "\"excluded\""}},
+          Keys{{"coupling.porosity", "\"deconvolved\""}, {"coupling.porosity_width", "{times_diameter = 1.5}"}},
           Keys{{"grains.motion", "\"block\""}}, Keys{{"coupling.gather_width", "{times_diameter = 1.5}"}}}) {
         SCOPED_TRACE(keys.empty() ? "standard" : keys.begin()->first + " = " + keys.begin()->second);
         Bench bench(keys);
@@ -88,8 +90,10 @@ TEST(Coupled, AnyLoadingIsStable) {
 }
 
 TEST(Coupled, SameBitsForAnyNumberOfThreads) {
-    const Keys lift{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"saffman_mei\"]"}};
-    Bench one(lift), two(lift), four(lift);
+    const Keys keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"saffman_mei\"]"},
+                    {"coupling.porosity", "\"overlap\""},
+                    {"coupling.own_volume", "\"excluded\""}};
+    Bench one(keys), two(keys), four(keys);
     const auto run = [](Bench& bench, int n) {
         const Threads threads(n);
         stir(bench);
@@ -120,6 +124,9 @@ TEST(Coupled, BadScenesAreInputErrors) {
     refused({{"coupling.kernel_width", "1e-5"}}, {"coupling.kernel_width", "spacing"});
     refused({{"coupling.kernel_width", "{times_diameter = 6.0}"}}, {"domain.size", "twice the reach"});
     refused({{"coupling.kernel_width", "{times_radius = 6.0}"}}, {"coupling.kernel_width"});
+    refused({{"coupling.porosity", "\"median\""}}, {"coupling.porosity", "median", "overlap"});
+    refused({{"coupling.porosity", "\"deconvolved\""}}, {"domain.size", "twice the reach"});
+    refused({{"coupling.own_volume", "\"none\""}}, {"coupling.own_volume", "excluded"});
     refused({{"coupling.direction", "\"both\""}}, {"coupling.direction", "two_way", "one_way"});
     refused({{"coupling.direction", ""}}, {"coupling.direction: missing"});
     refused({{"coupling.fluid_mass", ""}}, {"coupling.fluid_mass: missing"});
