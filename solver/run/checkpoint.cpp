@@ -297,6 +297,10 @@ void Loader::load_sph(SphFluid& f) const {
 void Loader::load_coupling(Coupling& coupling, const SphFluid& fluid) const {
     read_field("coupling/x_listed", coupling.places.x, coupling.places.size());
     coupling.clamped = integers("coupling/clamped", 1)[0];
+    if (coupling.self) {
+        coupling.self->memory = file_.doubles("coupling/wakes");
+        demand(coupling.self->memory.size() == coupling.places.size() * wake_size(), "coupling/wakes");
+    }
     renew_weights(coupling.weights, fluid, coupling.places);
 }
 
@@ -368,6 +372,7 @@ void save_checkpoint(const std::string& path, const Run& run, const Cost& cost) 
     if (run.simulation.coupling) {
         write_field(file, "coupling/x_listed", run.simulation.coupling->weights.x_listed);
         file.write("coupling/clamped", std::vector<std::int64_t>{run.simulation.coupling->clamped});
+        if (run.simulation.coupling->self) file.write("coupling/wakes", run.simulation.coupling->self->memory);
     }
     write_outputs(file, run);
     write_provenance(file, run, cost);

@@ -1,5 +1,6 @@
 #include "run/law_list.hpp"
 
+#include "coupling/self_disturbance.hpp"
 #include "dem/arrange.hpp"
 #include "run/probes.hpp"
 #include "sph/arrange_fluid.hpp"
@@ -31,6 +32,8 @@ std::vector<LawFamily> law_families() {
                                     {"coupling.exchange", law_entries<Exchange>()},
                                     {"coupling.porosity", law_entries<PrescribedPorosity>()},
                                     {"coupling.porosity (sph)", law_entries<PorosityLaw>()},
+                                    {"coupling.self_disturbance", law_entries<SelfDisturbanceLaw>()},
+                                    {"coupling.self_disturbance.structure", law_entries<StructureFactor>()},
                                     {"probe.quantity", law_entries<ProbeQuantity>()}};
     return families;
 }

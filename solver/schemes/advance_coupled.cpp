@@ -44,6 +44,35 @@ std::vector<Vec3> received_from_fluid(const FluidOnGrains& f, const GrainSystem&
     return force;
 }
 
+/// Before the grains' step: their own disturbance out of what they have gathered.
+void take_out_own(Coupling& c, const GrainSystem& system, GatheredFluid& at_grains) {
+    if (!c.self) return;
+    take_out(*c.self, c.mass, c.places.volume, at_grains);
+    c.velocity.resize(system.grains.size());
+    for (std::size_t k = 0; k < system.grains.size(); ++k)
+        c.velocity[static_cast<std::size_t>(system.grains.id[k])] = system.grains.v[k];
+}
+
+/// After it: the push of every grain, with its slip at the middle of the step, goes into its wake.
+void remember_own(Coupling& c, const FluidOnGrains& f, const GrainSystem& system, const std::vector<Vec3>& force,
+                  double dt) {
+    if (!c.self) return;
+    const Grains& g = system.grains;
+    std::vector<Push> pushes(g.size());
+    parallel_for(g.size(), [&](std::size_t k) {
+        const auto id = static_cast<std::size_t>(g.id[k]);
+        const GatheredFluid& at = f.at_grains;
+        Push& push = pushes[id];
+        push.force = force[id];
+        push.slip = at.u[id] + (0.5 * dt) * at.a[id] - 0.5 * (c.velocity[id] + g.v[k]);
+        if (c.self->fraction > 0.0)
+            push.screening =
+                c.self->fraction / (c.places.volume[id] * f.density) *
+                drag_resistance(f.drag, f.density, f.viscosity, 2.0 * g.radius[k], at.eps[id], push.slip.norm());
+    });
+    remember(*c.self, pushes, dt);
+}
+
 } // namespace
 
 void couple(Coupling& c, SphFluid& fluid, const GrainSystem& grains, bool displaced) {
@@ -62,6 +91,7 @@ void advance_coupled(Coupling& c, SphFluid& fluid, FluidOnGrains& at_grains, Gra
     find_porosity(c, fluid, new_lists);
     evaluate_middle(fluid, dt, step);
     c.clamped += gather(c.weights, fluid, c.mass, c.two_way, at_grains.at_grains);
+    take_out_own(c, grains, at_grains.at_grains);
 
     const std::int64_t n = c.grain_steps;
     update_forcing(at_grains, grains, dt, n);
@@ -76,6 +106,7 @@ void advance_coupled(Coupling& c, SphFluid& fluid, FluidOnGrains& at_grains, Gra
         std::vector<Vec3> force = received_from_fluid(at_grains, grains, dt);
         for (Vec3& f : force) f = -f;
         spread(fluid, c.weights, force);
+        remember_own(c, at_grains, grains, force, dt);
     }
     go_to_end(fluid, dt, step);
 }

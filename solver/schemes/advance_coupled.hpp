@@ -1,22 +1,26 @@
 // One step of smoothed particles and grains together.
 #pragma once
 
+#include "coupling/self_disturbance.hpp"
 #include "coupling/weights.hpp"
 #include "dem/grain_system.hpp"
 #include "schemes/fluid_on_grains.hpp"
 
 #include <cstdint>
+#include <optional>
 
 namespace plumb {
 
 /// How the fluid and the grains of a scene act on each other.
 struct Coupling {
     Weights weights;
-    bool two_way = true;          // false: the grains feel the fluid, which feels their porosity only
-    std::int64_t grain_steps = 1; // of the grains in one of the fluid
-    std::int64_t clamped = 0;     // porosities below the densest packing, or above 1 at a grain, set to it
-    GrainPlaces places;           // by id, at the middle of the present step
-    std::vector<double> mass;     // of the grains by id [kg]
+    std::optional<SelfDisturbance> self; // taken out of what the grains gather
+    bool two_way = true;                 // false: the grains feel the fluid, which feels their porosity only
+    std::int64_t grain_steps = 1;        // of the grains in one of the fluid
+    std::int64_t clamped = 0;            // porosities below the densest packing, or above 1 at a grain, set to it
+    GrainPlaces places;                  // by id, at the middle of the present step
+    std::vector<double> mass;            // of the grains by id [kg]
+    std::vector<Vec3> velocity;          // of the grains by id, at the start of the present step [m/s]; for `self`
 };
 
 /// Before the first step: lists, porosity and the mass of the fluid's particles, which is theirs at rest (`displaced`:
@@ -25,8 +29,8 @@ void couple(Coupling& coupling, SphFluid& fluid, const GrainSystem& grains, bool
 
 /// Advances both by one step of the fluid; `step` counts from 1. Readable as the scheme:
 ///     fluid and grains to the middle of the step, porosity there, accelerations of the fluid without the grains'
-///     forces, the fluid gathered at the grains, the grains' step under its forces, their momentum given back, the
-///     fluid's step.
+///     forces, the fluid gathered at the grains (less their own disturbance), the grains' step under its forces, their
+///     momentum given back, the fluid's step.
 void advance_coupled(Coupling& coupling, SphFluid& fluid, FluidOnGrains& at_grains, GrainSystem& grains, double dt,
                      std::int64_t step);
 

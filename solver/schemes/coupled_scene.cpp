@@ -34,6 +34,27 @@ double read_width(Table& coupling, const std::string& key, const SphFluid& fluid
                                           : relative.number("times_smoothing", positive) * fluid.h;
 }
 
+/// The correction, if the scene names one.
+void read_self_disturbance(Table& coupling, Coupling& c, const SphFluid& fluid, const GrainSystem& grains) {
+    const char* const key = "self_disturbance";
+    if (!coupling.has(key)) return;
+    const auto law = make_family<SelfDisturbanceLaw>(coupling.law(key));
+    const auto* theory = std::get_if<OseenBrinkman>(&law);
+    if (theory == nullptr) return;
+    if (!c.two_way) coupling.fail(key, "grains that do not push the fluid have no wake to take out");
+    if (std::holds_alternative<Inviscid>(fluid.viscous_term))
+        coupling.fail(key, "the theory needs a viscous term in the fluid");
+    const std::vector<double>& r = grains.grains.radius;
+    if (!c.weights.own_volume)
+        coupling.fail("own_volume", "\"excluded\" does what self_disturbance does with a grain's own volume");
+    const bool of_size = !std::holds_alternative<LoneGrain>(theory->structure) || by_diameter(c.weights.porosity);
+    if (of_size && std::any_of(r.begin(), r.end(), [&](double one) { return one != r.front(); }))
+        coupling.fail(key, "a structure factor and the porosity \"overlap\" are those of equal grains");
+    c.self =
+        self_disturbance(*theory, fluid, c.weights.kernel, c.weights.h, c.weights.porosity, c.weights.largest_diameter);
+    c.self->memory.assign(r.size() * wake_size(), 0.0);
+}
+
 /// All weight, less what carries it from outside, over the volume of what feels the gradient [Pa/m].
 Vec3 balancing_gradient(const SphFluid& fluid, const FluidOnGrains& on_grains, const GrainSystem& system) {
     double volume = 0.0;
@@ -86,6 +107,7 @@ Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem
         coupling.fail(
             "kernel_width",
             fmt::format("the kernel reaches {:.4g} m, less than the radius of a grain of {:.4g} m", least, d));
+    read_self_disturbance(coupling, c, fluid, grains);
     check_periodic_sides(fluid.domain, reach(c.weights) + fluid.clusters.skin, coupling.file());
     return c;
 }

@@ -1,122 +1,9 @@
 // Smoothed particles and grains together: momentum, determinism, limits of the exchange, scenes.
-#include "run/probes.hpp"
-#include "schemes/simulation.hpp"
-
-#include "fluid_fixtures.hpp"
-
-#include <fmt/format.h>
-
-#include <map>
+#include "coupled_fixtures.hpp"
 
 using namespace plumb;
 using namespace plumb::fixture;
-
-namespace {
-
-using Keys = std::map<std::string, std::string>;
-
-/// Water and grains of 0.1 mm on a lattice, in a periodic cube of 1.6 mm; h = 0.2 mm.
-std::string scene_text(const Keys& changes = {}) {
-    std::map<std::string, Keys> tables{
-        {"domain",
-         {{"size", "[1.6e-3, 1.6e-3, 1.6e-3]"}, {"periodic", "[true, true, true]"}, {"gravity", "[1.0, 0.0, -9.81]"}}},
-        {"fluid",
-         {{"method", "\"sph\""},
-          {"density", "1000.0"},
-          {"viscosity", "8.9e-4"},
-          {"spacing", "1.3333333333333333e-4"},
-          {"smoothing", "1.5"},
-          {"kernel", "\"wendland_c2\""},
-          {"equation_of_state", "\"linear\""},
-          {"sound_speed", "0.2"},
-          {"pressure", "\"dynamic\""},
-          {"operators", "\"plain\""},
-          {"viscous_term", "\"morris\""},
-          {"arrange", "\"lattice\""},
-          {"initial", "\"rest\""}}},
-        {"grains",
-         {{"name", "\"grain\""},
-          {"diameter", "1e-4"},
-          {"density", "2500.0"},
-          {"rotation", "false"},
-          {"motion", "\"free\""},
-          {"velocity", "[0.0, 0.0, 0.0]"},
-          {"contact", "\"none\""},
-          {"arrange",
-           "{law = \"lattice\", kind = \"cubic\", lower = [0.0, 0.0, 0.0], upper = [1.6e-3, 1.6e-3, 1.6e-3], "
-           "spacing = 2e-4}"}}},
-        {"coupling",
-         {{"direction", "\"two_way\""},
-          {"kernel", "\"wendland_c2\""},
-          {"kernel_width", "{times_diameter = 2.0}"},
-          {"fluid_mass", "\"displaced\""},
-          {"drag", "\"di_felice\""},
-          {"forces", "[\"buoyancy\", \"pressure_gradient\"]"},
-          {"exchange", "\"exponential\""},
-          {"mean_pressure_gradient", "\"balances_weight\""}}},
-        {"time",
-         {{"end", "1e-2"},
-          {"output_interval", "1e-3"},
-          {"integrator", "\"midpoint\""},
-          {"step", "2e-4"},
-          {"grain_step", "\"auto\""}}}};
-    for (const auto& [key, value] : changes) {
-        const std::size_t dot = key.find('.');
-        tables[key.substr(0, dot)][key.substr(dot + 1)] = value;
-    }
-    std::string text;
-    for (const auto& [name, keys] : tables) {
-        text += fmt::format("[{}]\n", name);
-        for (const auto& [key, value] : keys)
-            if (!value.empty()) text += fmt::format("{} = {}\n", key, value);
-    }
-    return text;
-}
-
-struct Bench {
-    Scene scene;
-    Simulation simulation;
-    explicit Bench(const std::string& text)
-        : scene(scene_from_text(text, "scene.toml", "/")), simulation(make_simulation(scene)) {
-        scene.root.finish();
-    }
-    explicit Bench(const Keys& changes = {}) : Bench(scene_text(changes)) {}
-    SphFluid& fluid() { return simulation.sph.value(); }
-    Grains& grains() { return simulation.grains.grains; }
-};
-
-/// Gives every grain another velocity, and the fluid a vortex.
-void stir(Bench& bench) {
-    Grains& g = bench.grains();
-    const bool alike = has_block(bench.simulation.grains); // grains of a block have one velocity
-    for (std::size_t k = 0; k < g.size(); ++k) {
-        const double s = alike ? 1.0 : static_cast<double>(g.id[k]);
-        g.v[k] = 3e-3 * Vec3(std::sin(s), std::cos(2.0 * s), std::sin(3.0 * s));
-    }
-    SphFluid& f = bench.fluid();
-    for (std::size_t k = 0; k < f.slots(); ++k)
-        f.v[0][k] = 2e-3 * std::sin(2.0 * std::numbers::pi * f.x[1][k] / 1.6e-3);
-}
-
-Vec3 momentum(Bench& bench) {
-    Vec3 sum = Vec3::Zero();
-    const SphFluid& f = bench.fluid();
-    for (std::size_t k = 0; k < f.slots(); ++k)
-        if (f.id[k] >= 0) sum += f.mass * f.share[k] * Vec3(f.v[0][k], f.v[1][k], f.v[2][k]);
-    const Grains& g = bench.grains();
-    for (std::size_t k = 0; k < g.size(); ++k) sum += g.mass[k] * g.v[k];
-    return sum;
-}
-
-void expect_same_state(Bench& a, Bench& b) {
-    expect_same_bits(a.fluid(), b.fluid());
-    for (std::size_t k = 0; k < a.grains().size(); ++k) {
-        ASSERT_EQ(a.grains().x[k], b.grains().x[k]);
-        ASSERT_EQ(a.grains().v[k], b.grains().v[k]);
-    }
-}
-
-} // namespace
+using Bench = CoupledBench;
 
 // An exchange in which the fluid does not lose what the grains receive: sub-cycled, with contacts, blocks or any force.
 TEST(Coupled, MomentumIsKept) {
@@ -240,6 +127,10 @@ TEST(Coupled, BadScenesAreInputErrors) {
     refused({{"coupling.porosity", "\"median\""}}, {"coupling.porosity", "median", "overlap"});
     refused({{"coupling.porosity", "\"deconvolved\""}}, {"domain.size", "twice the reach"});
     refused({{"coupling.own_volume", "\"none\""}}, {"coupling.own_volume", "excluded"});
+    refused({{"coupling.self_disturbance",
+              "{law = \"oseen_brinkman\", history = \"steady\", advection = \"slip\", structure = \"lone\"}"},
+             {"coupling.own_volume", "\"excluded\""}},
+            {"coupling.own_volume", "self_disturbance"});
     refused({{"coupling.direction", "\"both\""}}, {"coupling.direction", "two_way", "one_way"});
     refused({{"coupling.direction", ""}}, {"coupling.direction: missing"});
     refused({{"coupling.fluid_mass", ""}}, {"coupling.fluid_mass: missing"});
