@@ -12,6 +12,7 @@ TEST(Coupled, MomentumIsKept) {
         "friction = 0.0}";
     for (const Keys& keys :
          {Keys{}, Keys{{"time.grain_step", "3e-5"}}, Keys{{"coupling.exchange", "\"implicit\""}},
+          Keys{{"time.integrator", "\"damped_midpoint\""}},
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"virtual_mass\"]"}},
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"saffman_mei\"]"}},
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"li_ahmadi\"]"},
