@@ -80,12 +80,6 @@ double OverlapPorosity::operator()(const SpaceKernel& w, double r, double diamet
         w, [&](double /*rho*/) { return inside; }, 0.5 * diameter, r);
 }
 
-double OverlapPorosity::transform(double what, double kd) const {
-    const double z = 0.5 * kd;
-    if (z < 0.1) return what * (1.0 - z * z / 10.0 * (1.0 - z * z / 28.0));
-    return what * 3.0 * (std::sin(z) / z - std::cos(z)) / (z * z);
-}
-
 double DeconvolvedPorosity::operator()(const SpaceKernel& w, double r, double /*diameter*/) const {
     return 2.0 * w(r) - convolution(w, w, w.reach(), r);
 }

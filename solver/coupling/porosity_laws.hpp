@@ -2,14 +2,15 @@
 //     eps(x) = 1 - sum_j V_j G(|x - x_j|; d_j),
 // with a radial function G [1/m3] of integral one: the room taken from the fluid is that of the grains, wherever it is.
 //
-// A law gives its reach [m] and G(r) for a kernel and a diameter, and the Fourier transform of G from that of W. G is
-// tabulated once (radial_table.hpp), so it need not be fast; `by_diameter` says whether it differs from grain to grain.
-// To add an estimate: write the struct, name it in PorosityLaw at the end, and its README row; the tests find it.
+// A law gives its reach [m] and G(r) for a kernel and a diameter. G is tabulated once (radial_table.hpp), so it need
+// not be fast; `by_diameter` says whether it differs from grain to grain. To add an estimate: write the struct, name it
+// in PorosityLaw at the end, and its README row; the tests find it.
 #pragma once
 
 #include "core/laws.hpp"
 #include "sph/kernels.hpp"
 
+#include <cmath>
 #include <functional>
 #include <variant>
 
@@ -39,7 +40,7 @@ struct KernelPorosity {
     static constexpr bool by_diameter = false;
     double reach(const SpaceKernel& w, double /*diameter*/) const { return w.reach(); }
     double operator()(const SpaceKernel& w, double r, double /*diameter*/) const { return w(r); }
-    double transform(double what, double /*kd*/) const { return what; }
+    double transform(double w, double /*k*/, double /*diameter*/) const { return w; }
 };
 
 /// G = 1/V times the integral of W over the grain's sphere: the share of the fluid's filter that is inside of grains,
@@ -51,7 +52,11 @@ struct OverlapPorosity {
     static constexpr bool by_diameter = true;
     double reach(const SpaceKernel& w, double diameter) const { return w.reach() + 0.5 * diameter; }
     double operator()(const SpaceKernel& w, double r, double diameter) const;
-    double transform(double what, double kd) const; // What 3 j1(z)/z, z = k d/2
+    /// Times that of a sphere, 3 (sin x - x cos x)/x^3, x = k d/2.
+    double transform(double w, double k, double diameter) const {
+        const double x = 0.5 * k * diameter;
+        return w * (x < 1e-3 ? 1.0 - 0.1 * x * x : 3.0 * (std::sin(x) - x * std::cos(x)) / (x * x * x));
+    }
 };
 
 /// G = 2 W - W*W, one step of van Cittert's deconvolution: its transform, 1 - (1 - What)^2, keeps long waves to the
@@ -65,13 +70,17 @@ struct DeconvolvedPorosity {
     static constexpr bool by_diameter = false;
     double reach(const SpaceKernel& w, double /*diameter*/) const { return 2.0 * w.reach(); }
     double operator()(const SpaceKernel& w, double r, double diameter) const;
-    double transform(double what, double /*kd*/) const { return what * (2.0 - what); }
+    double transform(double w, double /*k*/, double /*diameter*/) const { return w * (2.0 - w); }
 };
 
 using PorosityLaw = std::variant<KernelPorosity, OverlapPorosity, DeconvolvedPorosity>;
 
 inline double reach(const PorosityLaw& law, const SpaceKernel& w, double diameter) {
     return std::visit([&](const auto& one) { return one.reach(w, diameter); }, law);
+}
+/// Transform of G where that of W is `w`.
+inline double transform(const PorosityLaw& law, double w, double k, double diameter) {
+    return std::visit([&](const auto& one) { return one.transform(w, k, diameter); }, law);
 }
 inline bool by_diameter(const PorosityLaw& law) {
     return std::visit([](const auto& one) { return one.by_diameter; }, law);

@@ -107,13 +107,8 @@ OseenBrinkman::OseenBrinkman(Table& t)
       advected(t.choice("advection", {"slip", "none"}) == "slip"),
       structure(make_family<StructureFactor>(t.law("structure"))) {}
 
-SelfDisturbance self_disturbance(const OseenBrinkman& law, const SphFluid& f, const Weights& weights, double d) {
-    const Kernel& kernel = weights.kernel;
-    const CouplingWidths& h = weights.h;
-    const auto porosity = [&](double k) { // p^
-        const double what = kernel_transform(kernel, k * h.porosity);
-        return std::visit([&](const auto& one) { return one.transform(what, k * d); }, weights.porosity);
-    };
+SelfDisturbance self_disturbance(const OseenBrinkman& law, const SphFluid& f, const Kernel& kernel,
+                                 const CouplingWidths& h, const PorosityLaw& porosity, double d) {
     SelfDisturbance self{law, f.density, {}, {}, {}, {}, {}, 0.0, 0.0, 0.0, {}};
     self.fraction = std::visit([](const auto& s) { return s.fraction; }, law.structure);
     const double wider = std::max(h.spread, h.gather), ratio = std::log(last_wave / first_wave) / (wave_numbers - 1.0);
@@ -124,7 +119,8 @@ SelfDisturbance self_disturbance(const OseenBrinkman& law, const SphFluid& f, co
         const double s_of_k = std::visit([&](const auto& s) { return s(k, d); }, law.structure);
         const double measure = k * k * width / (2.0 * std::numbers::pi * std::numbers::pi) *
                                kernel_transform(kernel, k * h.gather) * s_of_k;
-        const double own = kernel_transform(f.kernel, k * f.h), p = measure * porosity(k);
+        const double own = kernel_transform(f.kernel, k * f.h);
+        const double p = measure * transform(porosity, kernel_transform(kernel, k * h.porosity), k, d);
         self.k[n] = k;
         self.decay[n] = transverse_decay(f, k);
         self.share[n] = measure * kernel_transform(kernel, k * h.spread);

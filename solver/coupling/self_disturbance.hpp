@@ -65,7 +65,8 @@ struct SelfDisturbance {
 };
 
 /// For grains of diameter d [m] in a fluid of three dimensions.
-SelfDisturbance self_disturbance(const OseenBrinkman& law, const SphFluid& fluid, const Weights& weights, double d);
+SelfDisturbance self_disturbance(const OseenBrinkman& law, const SphFluid& fluid, const Kernel& kernel,
+                                 const CouplingWidths& widths, const PorosityLaw& porosity, double d);
 
 /// Numbers that are remembered of every grain.
 std::size_t wake_size();

@@ -43,15 +43,17 @@ void read_self_disturbance(Table& coupling, Coupling& c, const SphFluid& fluid, 
     const auto law = make_family<SelfDisturbanceLaw>(coupling.law(key));
     const auto* theory = std::get_if<OseenBrinkman>(&law);
     if (theory == nullptr) return;
-    if (!c.weights.own_volume) coupling.fail("own_volume", "\"excluded\" is part of the self-disturbance already");
     if (!c.two_way) coupling.fail(key, "grains that do not push the fluid have no wake to take out");
     if (std::holds_alternative<Inviscid>(fluid.viscous_term))
         coupling.fail(key, "the theory needs a viscous term in the fluid");
     const std::vector<double>& r = grains.grains.radius;
-    if (!std::holds_alternative<LoneGrain>(theory->structure) &&
-        std::any_of(r.begin(), r.end(), [&](double one) { return one != r.front(); }))
-        coupling.fail(key, "a structure factor is that of equal grains");
-    c.self = self_disturbance(*theory, fluid, c.weights, largest_diameter(grains));
+    if (!c.weights.own_volume)
+        coupling.fail("own_volume", "\"excluded\" does what self_disturbance does with a grain's own volume");
+    const bool of_size = !std::holds_alternative<LoneGrain>(theory->structure) || by_diameter(c.weights.porosity);
+    if (of_size && std::any_of(r.begin(), r.end(), [&](double one) { return one != r.front(); }))
+        coupling.fail(key, "a structure factor and the porosity \"overlap\" are those of equal grains");
+    c.self =
+        self_disturbance(*theory, fluid, c.weights.kernel, c.weights.h, c.weights.porosity, c.weights.largest_diameter);
     c.self->memory.assign(r.size() * wake_size(), 0.0);
 }
 

@@ -12,6 +12,7 @@ TEST(Coupled, MomentumIsKept) {
         "friction = 0.0}";
     for (const Keys& keys :
          {Keys{}, Keys{{"time.grain_step", "3e-5"}}, Keys{{"coupling.exchange", "\"implicit\""}},
+          Keys{{"time.integrator", "\"damped_midpoint\""}},
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"virtual_mass\"]"}},
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"saffman_mei\"]"}},
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"li_ahmadi\"]"},
@@ -127,6 +128,10 @@ TEST(Coupled, BadScenesAreInputErrors) {
     refused({{"coupling.porosity", "\"median\""}}, {"coupling.porosity", "median", "overlap"});
     refused({{"coupling.porosity", "\"deconvolved\""}}, {"domain.size", "twice the reach"});
     refused({{"coupling.own_volume", "\"none\""}}, {"coupling.own_volume", "excluded"});
+    refused({{"coupling.self_disturbance",
+              "{law = \"oseen_brinkman\", history = \"steady\", advection = \"slip\", structure = \"lone\"}"},
+             {"coupling.own_volume", "\"excluded\""}},
+            {"coupling.own_volume", "self_disturbance"});
     refused({{"coupling.direction", "\"both\""}}, {"coupling.direction", "two_way", "one_way"});
     refused({{"coupling.direction", ""}}, {"coupling.direction: missing"});
     refused({{"coupling.fluid_mass", ""}}, {"coupling.fluid_mass: missing"});

@@ -99,15 +99,20 @@ TEST(Porosity, OverlapWidensByTheSphere) {
     }
 }
 
-// Another iteration, a wrong sign: the transform is 1 - (1 - What)^2.
-TEST(Porosity, DeconvolvedKeepsLongWaves) {
-    for (const SpaceKernel& w : kernels()) {
-        const Tabulated g(DeconvolvedPorosity{}, w);
-        for (const double kh : {0.3, 1.0, 2.0, 4.0}) {
-            const double plain = transform(w, w.reach(), kh / h), found = transform(g, g.reach, kh / h);
-            EXPECT_NEAR(found, plain * (2.0 - plain), 1e-6);
+// Another iteration of the deconvolution, a wrong sign, a sphere of another size: the transforms that the laws state,
+// by which a grain's own disturbance is known; that of 2 W - W*W is 1 - (1 - What)^2.
+TEST(Porosity, TransformsAreThoseOfTheProfiles) {
+    for (const SpaceKernel& w : kernels())
+        for (const PorosityLaw& law : laws) {
+            const Tabulated g(law, w);
+            for (const double kh : {1e-3, 0.3, 1.0, 2.0, 4.0}) {
+                const double plain = transform(w, w.reach(), kh / h), found = transform(g, g.reach, kh / h);
+                EXPECT_NEAR(found, transform(law, plain, kh / h, diameter), 1e-6) << law_name(law);
+                if (std::holds_alternative<DeconvolvedPorosity>(law)) {
+                    EXPECT_NEAR(found, 1.0 - (1.0 - plain) * (1.0 - plain), 1e-6);
+                }
+            }
         }
-    }
 }
 
 // A table of another diameter than the grain's, a neighbour out of the kernel's reach but within G's.

@@ -29,14 +29,8 @@ OseenBrinkman law(const std::string& history, const std::string& advection, cons
     return OseenBrinkman(table);
 }
 
-Weights weights() {
-    Weights w;
-    w.h = {h, h, h};
-    return w;
-}
-
 SelfDisturbance wake(const OseenBrinkman& law, std::size_t grains = 1) {
-    SelfDisturbance self = self_disturbance(law, water(Morris{}), weights(), d);
+    SelfDisturbance self = self_disturbance(law, water(Morris{}), WendlandC2{}, {h, h, h}, KernelPorosity{}, d);
     self.memory.assign(grains * wake_size(), 0.0);
     return self;
 }
@@ -102,7 +96,8 @@ TEST(SelfDisturbance, SteadyCreepingWakeIsThatOfTheory) {
     const Vec3 u = velocity(wake(law("steady", "none", "'lone'")), push, 1e-4, 1);
     EXPECT_NEAR(u[2] / stokes, 0.608 * d / h, 0.608 * d / h * 3e-3);
     EXPECT_NEAR(u.head<2>().norm(), 0.0, 1e-15 * stokes);
-    SelfDisturbance exact = self_disturbance(law("steady", "none", "'lone'"), water(DoubleGradient{}), weights(), d);
+    SelfDisturbance exact = self_disturbance(law("steady", "none", "'lone'"), water(DoubleGradient{}), WendlandC2{},
+                                             {h, h, h}, KernelPorosity{}, d);
     EXPECT_NEAR(velocity(exact, push, 1e-4, 1)[2] / stokes, 0.537 * d / h, 0.537 * d / h * 3e-3);
 }
 
@@ -111,21 +106,6 @@ TEST(SelfDisturbance, OwnVolume) {
     const SelfDisturbance self = wake(law("unsteady", "slip", "'lone'"));
     EXPECT_NEAR(volume * self.own_porosity, 0.0785 / 8.0, 0.0785 / 8.0 * 2e-3);
     EXPECT_NEAR(self.own_porosity, self.own_spread, 1e-12 * self.own_spread);
-    // Of other laws for the porosity, by their profile: Int G(r) W(r) dV = own_porosity for one width.
-    for (const PorosityLaw& one : {PorosityLaw(OverlapPorosity{}), PorosityLaw(DeconvolvedPorosity{})}) {
-        Weights w = weights();
-        w.porosity = one;
-        const SpaceKernel kernel{WendlandC2{}, h};
-        constexpr int n = 200;
-        double sum = 0.0;
-        for (int i = 0; i < n; ++i) {
-            const double r = 2.0 * h * (i + 0.5) / n;
-            sum += 4.0 * std::numbers::pi * r * r * 2.0 * h / n * kernel(r) *
-                   std::visit([&](const auto& law) { return law(kernel, r, d); }, one);
-        }
-        const OseenBrinkman any = law("steady", "none", "'lone'");
-        EXPECT_NEAR(self_disturbance(any, water(Morris{}), w, d).own_porosity / sum, 1.0, 2e-3) << law_name(one);
-    }
 }
 
 // A wake that grows under a constant push ends as the steady one, in creeping flow and with slip.
@@ -229,6 +209,5 @@ TEST(SelfDisturbance, BadScenesAreInputErrors) {
             {"coupling.self_disturbance", "wake"});
     refused({{"coupling.self_disturbance", "\"oseen_brinkman\""}}, {"coupling.self_disturbance.history: missing"});
     refused({{"coupling.self_disturbance", "\"stokeslet\""}}, {"coupling.self_disturbance", "oseen_brinkman", "none"});
-    refused({{"coupling.own_volume", "\"excluded\""}}, {"coupling.own_volume", "self-disturbance"});
     refused({{"fluid.viscous_term", "\"none\""}, {"fluid.viscosity", "0.0"}}, {"coupling.self_disturbance", "viscous"});
 }
