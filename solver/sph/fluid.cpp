@@ -17,7 +17,7 @@ template <class Visit> void for_each_moving_field(SphFluid& f, Visit&& visit) {
     visit(f.drho);
     if (!f.lengths.omega.empty()) visit(f.lengths.omega);
     if (f.among_grains()) visit(f.share);
-    if (f.memory == 0.0) return;
+    if (f.memory == 0.0 || f.a_before[0].empty()) return; // none before the first evaluation
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) visit(f.a_before[c]);
     visit(f.drho_before);
 }
