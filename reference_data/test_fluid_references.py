@@ -98,6 +98,20 @@ def test_symbol_of_the_wendland_kernel_in_space_by_hand():
 VORTEX = scene([1.0, 1.0], {"law": "taylor_green", "speed": 1.0}, viscosity=10.0)
 
 
+@pytest.mark.parametrize("kernel", sph_operators.KERNELS)
+def test_central_viscosity_on_a_shear_wave_is_its_sum(kernel):
+    """The direction mean and the constant 10, against a lattice fine enough to be an integral; the softening is 0.01 h^2."""
+    h, spacing = 1.0, 0.125
+    chosen = sph_operators.KERNELS[kernel]
+    x = spacing * sph_operators._lattice(sph_operators.support(kernel) * h / spacing, 3)
+    r = np.linalg.norm(x, axis=1)
+    force = -chosen.sigma[3] * chosen.slope(r / h) / r * x[:, 2] ** 2 / (r**2 + 0.01 * h**2)
+    for k in (0.3, 1.0, 2.5):
+        whole = 10.0 * spacing**3 * np.sum(force * (1.0 - np.cos(k * x[:, 0]))) / k**2
+        assert whole == pytest.approx(sph_operators.central_shear_ratio(kernel, k * h), rel=2e-3)
+    assert sph_operators.central_shear_ratio(kernel, 1e-3) == pytest.approx(sph_operators.central_shear_ratio(kernel, 2e-2), rel=1e-3)
+
+
 def test_taylor_green_solves_the_navier_stokes_equations():
     vortex = case("taylor_green").Vortex(VORTEX)
     assert vortex.reynolds == pytest.approx(100.0)

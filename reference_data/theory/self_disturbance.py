@@ -50,11 +50,14 @@ class Scheme(NamedTuple):
 
 
 class Fluid(NamedTuple):
-    """rho, kg/m3; mu, Pa s; brinkman = beta, drag of other grains per volume and velocity, kg/(m3 s)."""
+    """rho, kg/m3; mu, Pa s; brinkman = beta, drag of other grains per volume and velocity, kg/(m3 s); artificial: kinematic viscosity
+
+    of an artificial viscosity in the scheme, m2/s (`sph_operators.central_shear_ratio`)."""
 
     rho: float
     mu: float
     brinkman: float = 0.0
+    artificial: float = 0.0
 
 
 def one_kernel(kernel, h, morris=True):
@@ -82,7 +85,11 @@ def viscosity_ratio(scheme, k):
 
 def decay_rate(scheme, fluid, k):
     """lambda(k) + beta/rho, 1/s."""
-    return fluid.mu / fluid.rho * np.square(k) * viscosity_ratio(scheme, k) + fluid.brinkman / fluid.rho
+    rate = fluid.mu / fluid.rho * np.square(k) * viscosity_ratio(scheme, k) + fluid.brinkman / fluid.rho
+    if fluid.artificial == 0.0:
+        return rate
+    kh = np.maximum(np.asarray(k, float) * scheme.viscosity.h, 1e-6)
+    return rate + fluid.artificial * np.square(k) * sph_operators.central_shear_ratio(scheme.viscosity.kernel, kh)
 
 
 def wave_numbers(scheme, distance=0.0, points=8):

@@ -39,11 +39,28 @@ class Memory:
         kept, before, after = step_factors(rate)
         self.a = kept * self.a + dt * before * force
         self._after = dt * after
-        return self.gathered @ self.a.real, self.gathered @ self._after.real
+        return (self.gathered @ self.a).real, (self.gathered @ self._after).real
 
     def close(self, force):
         """Add what the force at the end of the step contributes."""
         self.a = self.a + self._after * force
+
+
+class ElasticMemory(Memory):
+    """The same where particles resist being moved out of their lattice: da/dt = F - lambda a - K Int a dt, K [n] of
+    `sph_operators.lattice_stiffness`, 1/s2. Each wave is two fading sums, of the rates -s with s^2 + lambda s + K = 0."""
+
+    def __init__(self, modes, scheme, fluid, stiffness):
+        half = 0.5 * self_disturbance.decay_rate(scheme, fluid, modes.k)
+        root = np.sqrt(half**2 - stiffness + 0j)
+        root = np.where(np.abs(root) < 1e-9 * half, 1e-9 * half, root)  # two equal roots are the limit of two different ones
+        slow, fast = -stiffness / (half + root), -(half + root)  # their product is K
+        weights = np.concatenate([slow, -fast]) / np.tile(2.0 * root, 2)
+        super().__init__(modes._replace(k=np.tile(modes.k, 2), cosine=np.tile(modes.cosine, 2), share=np.tile(modes.share, 2)), scheme, fluid)
+        transverse = np.tile(modes.share * (1.0 - modes.cosine**2), 2) * weights
+        self.decay = -np.concatenate([slow, fast])
+        self.gathered = np.stack([transverse / fluid.rho, transverse * self.decay])
+        self.longitudinal = float(modes.share @ modes.cosine**2)
 
 
 def unsteady(modes, scheme, fluid, times, force, path=None):
@@ -84,18 +101,18 @@ def _slip_at_end(sphere, load, share, response, guess):
     raise ValueError(f"no slip found near {guess} m/s: the step is too long for the drag law")
 
 
-def plain_settling(sphere, scheme, modes, times, moves="slip", brinkman=0.0, stress=False, steps=300):
+def plain_settling(sphere, scheme, modes, times, moves="slip", brinkman=0.0, stress=False, steps=300, memory=None):
     """`Settling` of a grain released from rest at t = 0, two-way coupled and not corrected.
 
         m dv/dt = (rho_p - rho) V g - F,   F = drag(v - u_self) [+ V times the gathered -(-grad p + div tau) of the wake]
 
     sphere: `released_sphere.Sphere`, its factor f(Re) the drag law at the porosity the grain sees. The fluid receives F at the
     grain's place, its own force from its own slip; hydrostatic pressure is balanced and counts as buoyancy only. `stress`: the
-    grain also feels the pressure gradient and the stress of its wake. moves: see `self_disturbance` (modes that allow it).
+    grain also feels the pressure gradient and the stress of its wake. `memory`: sums of another kind than Memory(...). moves: see `self_disturbance` (modes that allow it).
     Trapezoidal in time on t = end (n/steps)^2 and `times`; 300 steps give v to about 1e-4 of the final one (by halving).
     """
-    fluid = self_disturbance.Fluid(sphere.rho, sphere.mu, brinkman)
-    memory, mass, weight = Memory(modes, scheme, fluid), sphere.inertia(False), sphere.weight()
+    memory = memory or Memory(modes, scheme, self_disturbance.Fluid(sphere.rho, sphere.mu, brinkman))
+    mass, weight = sphere.inertia(False), sphere.weight()
     volume = sphere.volume() if stress else 0.0
     grid = np.union1d(times[-1] * (np.arange(steps + 1) / steps) ** 2, times)
     v, u, force, slip = 0.0, 0.0, 0.0, 0.0

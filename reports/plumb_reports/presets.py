@@ -5,21 +5,39 @@ from .strict import CaseError, toml_table
 FILE = "presets.toml"
 
 
+ELSEWHERE = ("coupling", "time")  # tables of a preset that belong to these of the scene, and to coupled scenes only
+
+
 def preset_overrides(entry, folder):
-    """Scene overrides of the preset that a [[variant]] names, {} if it names none: the scene's [fluid] with the preset's keys in
-    place of every key that any preset has. Raises CaseError for an unknown preset or a scene without [fluid]."""
+    """Scene overrides of the preset that a [[variant]] names, {} if it names none: the scene's [fluid], and of a scene with
+    [coupling] that table and [time], with the preset's keys in place of every key that any preset has there. A table that the
+    preset does not have stays as it is. Raises CaseError for an unknown preset or a scene without [fluid]."""
     name = entry.text("preset", None)
     if name is None:
         return {}
     presets = read_presets(folder.parent / FILE)
     if name not in presets:
         raise entry.error("preset", f"is {name!r}; known are {', '.join(presets)}")
-    fluid = toml_table(folder / "scene.toml").value("fluid", None)
-    if not isinstance(fluid, dict):
+    scene = toml_table(folder / "scene.toml")
+    if not isinstance(scene.value("fluid", None), dict):
         raise entry.error("preset", "needs a scene with a [fluid] table")
-    owned = {key for preset in presets.values() for key in preset}
-    kept = {key: value for key, value in fluid.items() if key not in owned}
-    return {"fluid": without_idle_scale(kept | presets[name])}
+    overrides = {"fluid": without_idle_scale(with_keys(scene, "fluid", fluid_keys(presets[name]), map(fluid_keys, presets.values())))}
+    for table in ELSEWHERE:
+        if "coupling" in scene.values and table in presets[name]:
+            known = [preset.get(table, {}) for preset in presets.values()]
+            overrides[table] = with_keys(scene, table, presets[name][table], known)
+    return overrides
+
+
+def with_keys(scene, table, keys, known):
+    """A table of the scene with `keys` in place of all that any of the `known` sets has."""
+    owned = {key for one in known for key in one}
+    return {key: value for key, value in scene.value(table).items() if key not in owned} | keys
+
+
+def fluid_keys(preset):
+    """The keys of a preset that belong to [fluid]."""
+    return {key: value for key, value in preset.items() if key not in ELSEWHERE}
 
 
 def without_idle_scale(fluid):
@@ -29,7 +47,7 @@ def without_idle_scale(fluid):
 
 
 def read_presets(file):
-    """{name: {key of [fluid]: value}}."""
+    """{name: {key of [fluid], or a table of ELSEWHERE: value}}."""
     if not file.is_file():
         raise CaseError(f"{file}: is missing; a variant names a preset")
     table = toml_table(file)

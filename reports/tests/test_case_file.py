@@ -1,5 +1,6 @@
 """case.toml: what is read, and one clear line for each mistake."""
 
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -63,6 +64,27 @@ def test_a_preset_replaces_every_key_that_presets_have(case):
     overrides = read_case(case.folder).variant("v").overrides
     assert overrides == {"fluid": {"spacing": 0.1, "kernel": "c2"}, "fluid.density": 2.0}  # no shifting, nor its scale
     assert list(overrides) == ["fluid", "fluid.density"]  # --set in this order
+
+
+def test_a_preset_replaces_coupling_and_time_of_coupled_scenes_alone(case):
+    with_preset(case, "rough")
+    (case.folder.parent / "presets.toml").write_text(
+        PRESETS + '[rough.coupling]\nexchange = "explicit"\n[rough.time]\nsafety = {acoustic = 1.2}\n[smooth.coupling]\nmass = "pure"\n')
+    assert list(read_case(case.folder).variant("v").overrides) == ["fluid", "fluid.density"]
+    time = tomllib.loads((case.folder / "scene.toml").read_text())["time"]
+    case.append("scene.toml", '\n[coupling]\ndirection = "two_way"\nmass = "displaced"\nexchange = "implicit"\n')
+    overrides = read_case(case.folder).variant("v").overrides
+    assert overrides["fluid"] == {"spacing": 0.1, "kernel": "c2"}
+    assert overrides["coupling"] == {"direction": "two_way", "exchange": "explicit"}
+    assert overrides["time"] == {**time, "safety": {"acoustic": 1.2}}
+    assert list(overrides)[-1] == "fluid.density"
+
+
+def test_a_preset_without_a_table_leaves_the_scene_its_own(case):
+    with_preset(case, "smooth")
+    (case.folder.parent / "presets.toml").write_text(PRESETS + '[rough.time]\nsafety = {acoustic = 1.2}\n')
+    case.append("scene.toml", '\n[coupling]\ndirection = "two_way"\n')
+    assert list(read_case(case.folder).variant("v").overrides) == ["fluid", "fluid.density"]
 
 
 def test_unknown_presets_are_refused(case):

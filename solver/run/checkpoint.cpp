@@ -103,7 +103,7 @@ void write_sph(Hdf5Writer& file, const SphFluid& f) {
     std::vector<std::int32_t> id;
     for (const std::int32_t k : slot) id.push_back(f.id[static_cast<std::size_t>(k)]);
     file.write("sph/id", id);
-    file.write("sph/counts", std::vector<std::int64_t>{f.next_id, f.put_back});
+    file.write("sph/counts", std::vector<std::int64_t>{f.next_id, f.put_back, f.lengths.capped});
     if (f.boundary.size() == 0) return;
     for_each_boundary_field(f.boundary, f.dimensions, [&](const std::string& name, const Field<double>& field) {
         file.write(name, std::vector<double>(field.begin(), field.end()));
@@ -287,9 +287,10 @@ void Loader::load_sph(SphFluid& f) const {
     });
     f.id.assign(ids.begin(), ids.end());
     f.particles = n;
-    const std::vector<std::int64_t> counts = integers("sph/counts", 2);
+    const std::vector<std::int64_t> counts = integers("sph/counts", 3);
     f.next_id = static_cast<std::int32_t>(counts[0]);
     f.put_back = counts[1];
+    f.lengths.capped = counts[2];
     if (f.boundary.size() > 0) load_boundary(f.boundary, f.dimensions);
     restore_lists(f);
 }

@@ -151,7 +151,10 @@ std::vector<Remark> missing_models(const Simulation& simulation) {
     }
     if (!std::isfinite(ratio)) return remarks;
     const bool moves = simulation.grains.domain.gravity.norm() > 0.0 || flow_rate(fluid) > 0.0;
-    if (simulation.grains.domain.gravity.norm() > 0.0 && 1.0 / ratio > noticeable && !chosen(fluid, Buoyancy::name))
+    const bool in_gradient =
+        simulation.sph && simulation.sph->extras.stratified && chosen(fluid, PressureGradient::name);
+    if (simulation.grains.domain.gravity.norm() > 0.0 && 1.0 / ratio > noticeable && !in_gradient &&
+        !chosen(fluid, Buoyancy::name))
         remarks.push_back({"buoyancy", fmt::format("it carries {} of the weight", percent(1.0 / ratio))});
     if (accelerates(fluid) && 1.0 / ratio > noticeable && !chosen(fluid, PressureGradient::name))
         remarks.push_back({"pressure_gradient", fmt::format("fluid / grain density is {:.3g}", 1.0 / ratio)});

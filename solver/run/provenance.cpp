@@ -93,9 +93,13 @@ std::string provenance_json(const Scene& scene, const Simulation& simulation, co
     }
     if (simulation.sph) {
         const SphFluid& f = *simulation.sph;
-        j["sph"] = {{"particles", f.particles},     {"boundary_particles", f.boundary.size()},
-                    {"put_back", f.put_back},       {"h", f.h},
-                    {"sound_speed", f.sound_speed}, {"artificial_nu", artificial_nu(f)}};
+        j["sph"] = {{"particles", f.particles},
+                    {"boundary_particles", f.boundary.size()},
+                    {"put_back", f.put_back},
+                    {"capped_lengths", f.lengths.capped},
+                    {"h", f.h},
+                    {"sound_speed", f.sound_speed},
+                    {"artificial_nu", artificial_nu(f)}};
     }
     j["exit"] = exit ? nlohmann::ordered_json(*exit) : nlohmann::ordered_json(nullptr);
     // A path may be no valid UTF-8; JSON must be.

@@ -91,8 +91,8 @@ Vec3 balancing_gradient(const SphFluid& fluid, const FluidOnGrains& on_grains, c
 
 Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem& grains) {
     if (!fluid.open_sides.empty()) coupling.fail("direction", "grains know no open sides yet");
-    if (!std::holds_alternative<PlainOperators>(fluid.operators))
-        coupling.fail("direction", "grains need fluid.operators = \"plain\"");
+    if (std::holds_alternative<CorrectedOperators>(fluid.operators))
+        coupling.fail("direction", "grains need fluid.operators = \"plain\" or \"variable_h\"");
     if (!grains.injectors.empty()) coupling.fail("direction", "injected grains know no smoothed particles yet");
     Coupling c;
     c.two_way = coupling.choice("direction", {"two_way", "one_way"}) == "two_way";
@@ -122,6 +122,19 @@ Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem
     read_suspension_viscosity(coupling, c, fluid);
     check_periodic_sides(fluid.domain, reach(c.weights) + fluid.clusters.skin, coupling.file());
     return c;
+}
+
+void check_growth(const Table& coupling, const SphFluid& fluid) {
+    if (!std::holds_alternative<VariableOperators>(fluid.operators)) return;
+    double least = 1.0;
+    for (std::size_t k = 0; k < fluid.slots(); ++k) least = std::min(least, fluid.eps[k]);
+    const double needed = std::cbrt(1.0 / least), allowed = greatest_growth(fluid.operators);
+    if (needed > allowed)
+        coupling.fail("porosity_width",
+                      fmt::format("the fluid among the grains, eps = {:.4g} at least, may take room for smoothing "
+                                  "lengths of {:.4g} h; say operators = {{law = \"variable_h\", greatest_growth = "
+                                  "{:.3g}}} in [fluid] (it is {:.4g})",
+                                  least, needed, std::ceil(105.0 * needed) / 100.0, allowed));
 }
 
 FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid) {

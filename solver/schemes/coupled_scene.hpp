@@ -10,6 +10,10 @@ namespace plumb {
 /// Kernels, their widths and the direction.
 Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem& grains);
 
+/// InputError when smoothing lengths that follow the density would be cut off among the grains; after couple(), which
+/// finds the porosity.
+void check_growth(const Table& coupling, const SphFluid& fluid);
+
 /// The forces of the fluid on the grains.
 FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid);
 

@@ -92,6 +92,21 @@ StepLimit drag_limit(const FluidOnGrains& fluid, const GrainSystem& system) {
             "2 tau_p, explicit exchange only"};
 }
 
+/// The same in a computed fluid at rest, at the least porosity of its particles: where grains drag fluid of less mass
+/// along, the slip relaxes (1 + load) times as fast.
+StepLimit drag_limit(const FluidOnGrains& on_grains, const GrainSystem& system, const SphFluid& fluid) {
+    const double eps = *std::min_element(fluid.eps.begin(), fluid.eps.end());
+    double fastest = 0.0; // [1/s]
+    for (std::size_t k = 0; k < system.grains.size(); ++k) {
+        const double d = 2.0 * system.grains.radius[k];
+        const double load = system.grains.mass[k] / sphere_volume(d) * (1.0 - eps) / (fluid.density * eps);
+        fastest = std::max(fastest, (1.0 + load) * system.grains.mobility[k] *
+                                        drag_resistance(on_grains.drag, fluid.density, fluid.viscosity, d, eps, 0.0));
+    }
+    return {"drag", fastest > 0.0 ? 2.0 / fastest : std::numeric_limits<double>::infinity(),
+            "2 tau_p/(1 + mass of grains over mass of fluid), explicit exchange only"};
+}
+
 std::vector<double> probe_intervals(Table& root) {
     std::vector<double> intervals;
     for (Table& probe : root.tables("probe"))
@@ -178,8 +193,12 @@ void make_coupled(Table& root, Simulation& s) {
     s.coupling = read_coupling(coupling, *s.sph, s.grains);
     s.fluid = fluid_on_grains(coupling, *s.sph);
     couple(*s.coupling, *s.sph, s.grains, coupling.choice("fluid_mass", {"displaced", "pure"}) == "displaced");
+    check_growth(coupling, *s.sph);
     drive(coupling, *s.sph, *s.fluid, *s.coupling, s.grains);
-    s.timing = timing(time, coupled_limits(*s.sph, *s.coupling), probe_intervals(root));
+    std::vector<StepLimit> limits = coupled_limits(*s.sph, *s.coupling);
+    if (std::holds_alternative<ExplicitExchange>(s.fluid->exchange))
+        limits.push_back(drag_limit(*s.fluid, s.grains, *s.sph));
+    s.timing = timing(time, std::move(limits), probe_intervals(root));
     s.coupling->grain_steps = grain_steps(time, s.timing.dt, grain_limits(s.grains, s.sph->sound_speed * 0.1));
     set_inertia(*s.fluid, s.grains, s.timing.dt);
     start(*s.sph);

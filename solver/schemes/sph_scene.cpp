@@ -75,8 +75,7 @@ void read_models(Table& table, SphFluid& f) {
         f.shifting = a * f.h * table.number("reference_velocity", positive);
     }
     f.extras.softening_sq = 0.01 * f.h * f.h;
-    f.clusters.reach =
-        support(f.kernel) * f.h * (std::holds_alternative<VariableOperators>(f.operators) ? greatest_growth : 1.0);
+    f.clusters.reach = support(f.kernel) * f.h * greatest_growth(f.operators);
     f.clusters.skin = skin_in_spacings * f.spacing;
 }
 

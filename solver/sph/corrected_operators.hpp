@@ -5,6 +5,7 @@
 #include "core/laws.hpp"
 
 #include <array>
+#include <cstdint>
 #include <variant>
 
 namespace plumb {
@@ -28,18 +29,27 @@ struct CorrectedOperators {
                                   "2022, arXiv 2107.11859"};
 };
 
-/// Plain sums with a smoothing length of each particle's own, h (rho_0/rho)^(1/d) (variable_sweep.hpp).
+/// Plain sums with a smoothing length of each particle's own, h (rho_0/rho)^(1/d) (variable_sweep.hpp). Among grains
+/// rho is the superficial density, so h follows the room that a particle takes: h eps^(-1/d).
 struct VariableOperators {
     static constexpr std::string_view name = "variable_h";
     static constexpr LawInfo info{"-sum m [p_a/(Omega_a rho_a^2) grad W(h_a) + p_b/(Omega_b rho_b^2) grad W(h_b)], "
                                   "1/Omega_a sum m v_ab . grad W(h_a)",
-                                  "rho from 0.9 rho_0 on; conserves momentum and energy",
+                                  "rho from rho_0/greatest_growth^d on; conserves momentum and energy",
                                   "Springel & Hernquist 2002, Mon. Not. R. Astron. Soc. 333, 649"};
+    double greatest_growth = 1.05; // of h over that at rho_0: the lists reach that far
+    VariableOperators() = default;
+    explicit VariableOperators(Table& table)
+        : greatest_growth(table.number_or("greatest_growth", 1.05, {1.0, 2.0, false, false})) {}
 };
 
 using Operators = std::variant<PlainOperators, CorrectedOperators, VariableOperators>;
 
-inline constexpr double greatest_growth = 1.05; // of a variable smoothing length over that at rho_0
+/// How much longer than h a smoothing length may get.
+inline double greatest_growth(const Operators& operators) {
+    const auto* variable = std::get_if<VariableOperators>(&operators);
+    return variable != nullptr ? variable->greatest_growth : 1.0;
+}
 
 /// Smoothing length of a record, as pairs need it.
 struct RecordLength {
@@ -51,7 +61,8 @@ struct RecordLength {
 /// Smoothing lengths where they vary; empty otherwise.
 struct VariableLengths {
     Field<RecordLength> of_record;
-    Field<double> omega; // [slots]
+    Field<double> omega;     // [slots]
+    std::int64_t capped = 0; // lengths that would have grown further than greatest_growth, set to it
 };
 
 /// What the first pass of the corrected operators leaves for the second.

@@ -2,16 +2,17 @@
 
 #include "sph/sweep.hpp"
 
+#include <atomic>
+
 namespace plumb {
 
 namespace fluid_sweep {
 
 namespace {
 
-/// Smoothing length of a particle of volume V [m].
-double smoothing_length(const SphFluid& f, double volume) {
-    const double side = f.dimensions == 2 ? std::sqrt(volume) : std::cbrt(volume);
-    return std::min(f.h / f.spacing * side, greatest_growth * f.h);
+/// Smoothing length of a particle of volume V [m], as if nothing limited it.
+double free_length(const SphFluid& f, double volume) {
+    return f.h / f.spacing * (f.dimensions == 2 ? std::sqrt(volume) : std::cbrt(volume));
 }
 
 /// What a pair needs to know of each record's smoothing length; boundary particles have Omega = 1.
@@ -19,9 +20,12 @@ template <class KernelLaw> void fill_lengths(SphFluid& f) {
     const FluidClusters& clusters = f.clusters;
     renew_size(f.lengths.of_record, clusters.records.size());
     if (f.lengths.omega.size() != f.slots()) f.lengths.omega.assign(f.slots(), 1.0);
+    const double longest = greatest_growth(f.operators) * f.h;
+    std::atomic<std::int64_t> capped{0};
     const auto length_of = [&](std::int32_t record, double omega) {
         const auto r = static_cast<std::size_t>(record);
-        const double h = smoothing_length(f, clusters.records[r].volume);
+        const double wanted = free_length(f, clusters.records[r].volume), h = std::min(wanted, longest);
+        if (wanted > longest) ++capped;
         const double factor = KernelLaw::sigma(f.dimensions) / std::pow(h, f.dimensions + 2);
         f.lengths.of_record[r] = {1.0 / h, factor, factor / omega};
     };
@@ -30,6 +34,7 @@ template <class KernelLaw> void fill_lengths(SphFluid& f) {
     });
     parallel_for(clusters.record_of_passive.size(),
                  [&](std::size_t k) { length_of(clusters.record_of_passive[k], 1.0); });
+    f.lengths.capped += capped;
     parallel_for(clusters.records.size(), [&](std::size_t r) {
         const auto source = static_cast<std::size_t>(clusters.image_of[r]);
         if (source != r) f.lengths.of_record[r] = f.lengths.of_record[source];

@@ -12,7 +12,8 @@ namespace plumb {
 ///     Omega_a = 1 + h_a/(d rho_a) sum m dW(h_a)/dh
 /// which conserve momentum, and energy with du = p/rho^2 drho (Springel & Hernquist 2002, Mon. Not. R. Astron. Soc.
 /// 333, 649). Omega is that of the last evaluation. Viscosity, diffusion and shifting use the mean of both gradients. h
-/// grows to 1.05 times its value at rho_0 at most.
+/// grows to VariableOperators::greatest_growth times its value at rho_0 at most. Among grains rho, P/rho^2 and m/rho in
+/// the records are those of the superficial density and `share` the particle's mass: the same sums.
 void evaluate_variable(SphFluid& fluid);
 
 } // namespace plumb

@@ -19,7 +19,9 @@ TEST(Coupled, MomentumIsKept) {
                {"time.grain_step", "3e-5"}},
           Keys{{"coupling.porosity", "\"overlap\""}, {"coupling.own_volume", "\"excluded\""}},
           Keys{{"coupling.porosity", "\"deconvolved\""}, {"coupling.porosity_width", "{times_diameter = 1.5}"}},
-          Keys{{"grains.motion", "\"block\""}}, Keys{{"coupling.gather_width", "{times_diameter = 1.5}"}}}) {
+          Keys{{"grains.motion", "\"block\""}}, Keys{{"coupling.gather_width", "{times_diameter = 1.5}"}},
+          Keys{{"fluid.operators", "\"variable_h\""}},
+          Keys{{"fluid.operators", "\"variable_h\""}, {"coupling.fluid_mass", "\"pure\""}}}) {
         SCOPED_TRACE(keys.empty() ? "standard" : keys.begin()->first + " = " + keys.begin()->second);
         Bench bench(keys);
         stir(bench);
@@ -91,18 +93,20 @@ TEST(Coupled, AnyLoadingIsStable) {
 }
 
 TEST(Coupled, SameBitsForAnyNumberOfThreads) {
-    const Keys keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"saffman_mei\"]"},
-                    {"coupling.porosity", "\"overlap\""},
-                    {"coupling.own_volume", "\"excluded\""}};
-    Bench one(keys), two(keys), four(keys);
-    const auto run = [](Bench& bench, int n) {
-        const Threads threads(n);
-        stir(bench);
-        advance(bench.simulation, 30);
-    };
-    run(one, 1), run(two, 2), run(four, 4);
-    expect_same_state(one, two);
-    expect_same_state(one, four);
+    for (const Keys& keys : {Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"saffman_mei\"]"},
+                                  {"coupling.porosity", "\"overlap\""},
+                                  {"coupling.own_volume", "\"excluded\""}},
+                             Keys{{"fluid.operators", "\"variable_h\""}}}) {
+        Bench one(keys), two(keys), four(keys);
+        const auto run = [](Bench& bench, int n) {
+            const Threads threads(n);
+            stir(bench);
+            advance(bench.simulation, 30);
+        };
+        run(one, 1), run(two, 2), run(four, 4);
+        expect_same_state(one, two);
+        expect_same_state(one, four);
+    }
 }
 
 // One way: the fluid feels nothing of the grains but the room they take, which moves it to and fro.
@@ -140,6 +144,9 @@ TEST(Coupled, BadScenesAreInputErrors) {
     refused({{"coupling.direction", "\"one_way\""}}, {"coupling.mean_pressure_gradient", "one_way", "vector"});
     refused({{"fluid.pressure", "\"full\""}}, {"coupling.forces", "buoyancy", "full"});
     refused({{"fluid.operators", "\"corrected\""}}, {"coupling.direction", "plain"});
+    refused({{"fluid.operators", "{law = \"variable_h\", greatest_growth = 1.01}"}},
+            {"coupling.porosity_width", "eps", "greatest_growth = 1.08"});
+    refused({{"fluid.operators", "{law = \"variable_h\", greatest_growth = 0.9}"}}, {"fluid.operators", "0.9"});
     refused({{"time.grain_step", ""}}, {"time.grain_step: missing"});
     refused({{"time.grain_step", "-1.0"}}, {"time.grain_step", "-1"});
     refused({{"grains.arrange", "\"none\""}}, {"grains"});

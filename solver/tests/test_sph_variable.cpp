@@ -13,7 +13,7 @@ SphFluid stirred(int d, const Kernel& kernel, double share) {
     SphFluid f = empty_fluid(box_of_dimensions(d, Vec3(1.0, 1.1, 1.2), {true, true, true}), kernel, 1.3);
     f.operators = VariableOperators{};
     f.equation_of_state = LinearState{};
-    f.clusters.reach *= greatest_growth;
+    f.clusters.reach *= greatest_growth(f.operators);
     put_lattice(f, {10, 11, 12}, 0.2, 5);
     stir(f, 1.0, share, 6);
     start(f);
