@@ -30,7 +30,7 @@ def test_exact_divergence_is_the_smoothed_block(nominal, ratio):
 def test_a_narrow_kernel_of_the_fluid_has_an_exact_divergence():
     block, wide = scene.lattice(0.8), 4.0 * D
     widths = sinking_block.Widths(0.5 * D, wide, wide, wide)
-    at = sinking_block.field(block, BOX, widths, answered=1e4)
+    at = sinking_block.field(block, BOX, widths, answered=sinking_block.Answer(1e4, 0.1 * D))
     assert at.w == pytest.approx(1.0 / at.eps, rel=2e-3)
 
 
@@ -38,7 +38,7 @@ def test_a_dilute_block_divides_the_kernel_out():
     """w - 1 -> phi^/W^ where answered, wave by wave; here all kernels are the same, so it is the layers' own density."""
     block = scene.Lattice(0.999, 3, 1, 6.2e-4, 0.0)
     widths = sinking_block.Widths(*[3.0 * D] * 4)
-    at = sinking_block.field(block, 4.0e-3, widths, answered=300.0)
+    at = sinking_block.field(block, 4.0e-3, widths, answered=sinking_block.Answer(300.0, 0.5 * D))
     count = len(at.z)
     k = 2.0 * np.pi * np.fft.rfftfreq(count, at.box / count)
     kernel = sph_operators.transform("wendland_c2", 3, k * widths.fluid)

@@ -13,7 +13,8 @@ viscosity of that wave (artificial included),
     du^/dt = (c^2/nu) W^ {q^ - W^ u^},      q' = -w (ln eps)',                                                              (2)
 
 linear in w and solved by a matrix exponential. Only waves with W^ << 1 are slow, on which the gathering kernel has little weight:
-c^2 t/nu enters the block's velocity in the fourth digit. (1) holds while the lattice of the fluid is not yet drawn apart.
+c^2 t/nu enters the block's velocity in the fourth digit. Waves shorter than two spacings the fluid's lattice does not hold: nothing
+answers them. (1) holds while the lattice of the fluid is not yet drawn apart.
 
 Widths of spreading, gathering and porosity are independent. As in smoothed_block.py a grain's slip is <eps> V <w>, and the force of
 all grains, spread and gathered again, is the gradient that each feels.
@@ -69,8 +70,15 @@ def _by_waves(factor, count):
     return np.fft.irfft(factor[:, None] * np.fft.rfft(np.eye(count), axis=0), count, axis=0)
 
 
+class Answer(NamedTuple):
+    """What the fluid makes of a porosity that moves: c^2 t/nu, and the spacing of its particles, m."""
+
+    reached: float
+    spacing: float
+
+
 def response(eps, box, h, answered):
-    """w of equation (2) for the porosities [n] of a box; `answered` = c^2 t/nu. The first point lies in the clear."""
+    """w of equation (2) for the porosities [n] of a box and an Answer. The first point lies in the clear."""
     count = len(eps)
     k = 2.0 * math.pi * np.fft.rfftfreq(count, box / count)
     smoothed = sph_operators.transform(KERNEL, 3, k * h)
@@ -80,7 +88,7 @@ def response(eps, box, h, answered):
     steepness = np.fft.irfft(slope * np.fft.rfft(np.log(eps)), count)
     integral = _by_waves(primitive, count)
     integral = (integral - integral[0]) * steepness  # q = -integral w, zero in the clear
-    drive = _by_waves(answered * smoothed, count)
+    drive = _by_waves(np.where(k < math.pi / answered.spacing, answered.reached * smoothed, 0.0), count)
     rates = np.zeros((count + 1, count + 1))
     rates[:count, :count] = -drive @ (_by_waves(smoothed, count) + integral)
     rates[:count, count] = -drive @ integral.sum(axis=1)
