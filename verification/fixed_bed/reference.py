@@ -22,7 +22,7 @@ class Bed:
     def __init__(self, scene):
         fluid, arrange = scene["fluid"], scene["grains"]["arrange"]
         self.rho, self.mu, self.d = fluid["density"], fluid["viscosity"], scene["grains"]["diameter"]
-        self.law = LAWS[scene["coupling"]["drag"]]
+        self.law = LAWS[scene["coupling"]["drag"].removesuffix("_missing_eps")]  # as it is meant, also in a twin
         self.gradient = -scene["coupling"]["mean_pressure_gradient"][0]
         side = scene["domain"]["size"][0]
         self.random = arrange["law"] == "random"
