@@ -135,7 +135,7 @@ def figures(runs):
                 axes.plot(eps, [n[4] / n[7] for n in own], marks.get(width, "x"), color=f"C{index}", ms=5,
                           mfc=None if filled else "none", label=f"h/d = {width:g}, {fluid}")
         axes.axhspan(0.95, 1.05, color="0.9", zorder=0)
-        axes.set(title=title, xlabel="eps of the lattice (-)", ylabel="V over the law's at that eps (-)", ylim=(0.9, 2.6) if not narrow else (0.9, 1.2))
+        axes.set(title=title, xlabel="eps of the lattice (-)", ylabel="V over the law's at that eps (-)", ylim=(0.9, 2.6) if not narrow else (0.9, 1.3))
         axes.legend(fontsize=7)
     return [("block", figure, "Fall of the block over that of a uniform suspension of the lattice's own porosity. Lines: theory, dashed in "
              "glycerol-water; symbols: runs, filled in glycerol-water; grey: 5 %.")]
