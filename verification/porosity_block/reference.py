@@ -121,7 +121,8 @@ def figures(runs):
 
     figure = Figure(figsize=(11.0, 4.0), layout="constrained")
     panels = figure.subplots(1, 2)
-    good = [(run.variant, _numbers(run)) for run in runs if not run.failure and run.variant.split("_")[0] in ("water", "glycerol")]
+    good = [(run.variant, _numbers(run)) for run in runs if not run.failure
+            and run.variant.split("_")[0] in ("water", "glycerol") and run.variant.split("_")[-1] not in ("wider", "commensurate")]
     marks = {6.0: "s", 4.0: "v", 3.0: "^", 2.0: "o", 1.5: "D"}
     for axes, narrow, title in ((panels[0], False, "published widths"), (panels[1], True, "one narrow width")):
         chosen = [(name, n) for name, n in good if name.endswith("_narrow") == narrow]
