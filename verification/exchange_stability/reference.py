@@ -11,8 +11,10 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
 from drag_laws.drag_laws import ergun  # noqa: E402
+from theory import sph_operators  # noqa: E402
 
-UNITS = {"slip": "1", "energy_growth": "1", "slip.boundary": "Pa s", "slip.stable": "Pa s", "slip.unstable": "Pa s"}
+UNITS = {"slip": "1", "energy_growth": "1", "slip.boundary": "Pa s", "slip.stable": "Pa s", "slip.unstable": "Pa s",
+         "friction_share": "1", "friction.stable": "1", "friction.unstable": "1", "friction.boundary": "1"}
 
 # What a step of z = rate times dt leaves of the slip, as the solver documents it (plumb laws).
 LEFT = {
@@ -29,8 +31,10 @@ class Bed:
     def __init__(self, scene):
         fluid, grain, time = scene["fluid"], scene["grains"], scene["time"]
         self.d, self.mu, self.dt = grain["diameter"], fluid["viscosity"], time["step"]
-        self.parts = max(1, math.ceil(self.dt / time["grain_step"] * (1.0 - 1e-12)))
-        self.steps = round(time["end"] / self.dt)
+        if self.dt == "auto":
+            self.dt = math.nan
+        self.parts = 1 if math.isnan(self.dt) else max(1, math.ceil(self.dt / time["grain_step"] * (1.0 - 1e-12)))
+        self.steps = 0 if math.isnan(self.dt) else round(time["end"] / self.dt)
         self.exchange = scene["coupling"]["exchange"]
         self.tau_p = grain["density"] * self.d**2 / (18.0 * self.mu)
         if grain["arrange"]["law"] != "lattice":
@@ -71,7 +75,17 @@ def slip(run):
     return t, w / w[0]
 
 
+def friction_share(run):
+    """Step times the rate at which friction takes a fluid of this porosity's shear wave: README, equation (4)."""
+    fluid, size = run.scene["fluid"], run.scene["domain"]["size"][0]
+    k, h = 2.0 * math.pi * fluid["initial"]["waves"] / size, fluid["smoothing"] * fluid["spacing"]
+    ratio = sph_operators.lattice_viscosity(fluid["kernel"], [k, 0.0, 0.0], h, fluid["spacing"])
+    return float(run.info["step"] * fluid["viscosity"] / fluid["density"] * k**2 * ratio / Bed(run.scene).eps)
+
+
 def measure(quantity, run):
+    if quantity == "friction_share":
+        return friction_share(run)
     if quantity == "slip":
         return slip(run)
     if quantity == "energy_growth":
@@ -103,7 +117,7 @@ def map_figure(runs):
         seen.add(label)
 
     for run in runs:
-        if run.scene["grains"]["arrange"]["law"] != "lattice" or run.variant == "half_steps":
+        if run.scene["grains"]["arrange"]["law"] != "lattice" or run.variant.startswith(("half", "friction")):
             continue
         if getattr(run, "stable", None) is not None:
             mark(run, run.stable, "C0o", "explicit, highest stable")
