@@ -1,0 +1,207 @@
+"""Growth of a displaced lattice of grains above clear fluid: linear theory of the coupled scheme from the start on (README.md)."""
+
+import math
+import sys
+from functools import lru_cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
+
+from theory import layered_rayleigh_taylor as layered  # noqa: E402
+from theory import rayleigh_taylor, released_layers, sedimentation_scene, settling  # noqa: E402
+
+UNITS = {"history": "1", "growth": "1", "lowest": "1", "over_published": "1"}
+DEVELOPED = 0.75  # of the largest rate: the window begins where the linear solution has reached it
+STEEP = 0.1  # wave number times amplitude of the linear solution: the window ends there
+AMPLITUDE = {"grains.csv": 1.0, "grains_tenth.csv": 0.1}  # of the published displacement, d/8 a wave
+GRID = 2e-3  # s, on which the linear solution is tabulated: n^2 GRID^2/8 = 1e-3 at most, in a logarithm that bends by that
+
+
+def setting(scene):
+    """Of the scene as it is meant: coupling, drag and the grains are the case's, which a twin may break."""
+    fluid = scene["fluid"]
+    h = 1.5 * fluid["spacing"]
+    return released_layers.Setting(fluid["density"], fluid["viscosity"], h, sedimentation_scene.coupling_width(h, rayleigh_taylor.EPS),
+                                   fluid["smoothing"] * fluid["spacing"], kernel=fluid["kernel"])
+
+
+def start_amplitude(scene):
+    """Of each wave, m."""
+    return settling.GRAIN["d"] / 8.0 * AMPLITUDE[Path(scene["grains"]["arrange"]["path"]).name]
+
+
+class Linear(NamedTuple):
+    """The solution for a displacement of 1 at the start: t, amplitude of both waves at the lowest layer [2, nt], its fall [m]."""
+
+    t: np.ndarray
+    rise: np.ndarray
+    fall: np.ndarray
+
+
+def linear(scene):
+    return solved(setting(scene), scene["time"]["end"])
+
+
+@lru_cache(maxsize=None)
+def solved(s, end):
+    times = tuple(np.linspace(0.0, end, math.ceil(end / GRID - 1e-6) + 1))
+    found = [released_layers.history(s, k, times, GRID) for k in sedimentation_scene.wave_numbers()]
+    return Linear(found[0].t, np.array([one.rise[:, 0] for one in found]), found[0].z[0, 0] - found[0].z[:, 0])
+
+
+@lru_cache(maxsize=None)
+def rates(s):
+    """Largest rate of both waves on the layer at rest, 1/s."""
+    return tuple(released_layers.growth_rate(s, k) for k in sedimentation_scene.wave_numbers())
+
+
+class Measured(NamedTuple):
+    """Of the lowest layer: t, amplitudes of both waves [2, nt], fall of its mean and of its lowest grain [m]."""
+
+    t: np.ndarray
+    amplitude: np.ndarray
+    fall: np.ndarray
+    lowest: np.ndarray
+
+
+_measured = {}
+
+
+def measured(run):
+    """Projections on cos kx + cos ky and on cos kx cos ky over the 29 x 29 grains of the lowest layer, at their first x and y."""
+    if id(run) not in _measured:
+        count = sedimentation_scene.lattice(rayleigh_taylor.EPS).columns ** 2
+        shots = [run.snapshot(k) for k in range(len(run.snapshot_files()))]
+        places = np.array([shot["grains"]["x"][np.argsort(shot["grains"]["id"])][:count] for shot in shots])
+        k, (x, y), z = sedimentation_scene.wave_numbers()[0], places[0, :, :2].T, places[:, :, 2]
+        both = np.array([z @ (np.cos(k * x) + np.cos(k * y)), -4.0 * z @ (np.cos(k * x) * np.cos(k * y))]) / count
+        _measured[id(run)] = Measured(np.array([shot["time"] for shot in shots]), both, z[0].mean() - z.mean(axis=1),
+                                      z[0].min() - z.min(axis=1)), run
+    return _measured[id(run)][0]
+
+
+def interpolated(t, times, values):
+    """Between the places of the table: the logarithm is smooth."""
+    return np.exp(np.interp(t, times, np.log(values)))
+
+
+def window(scene, mode):
+    """(start, end) in s, from theory alone, at most to the end of the run; NaN if it does not get so far."""
+    found, k = linear(scene), sedimentation_scene.wave_numbers()[mode]
+    rise = found.rise[mode]
+    developed = np.gradient(np.log(rise), found.t) >= DEVELOPED * rates(setting(scene))[mode]
+    start = float(found.t[np.argmax(developed)]) if developed.any() else math.nan
+    return start, float(np.interp(STEEP, k * start_amplitude(scene) * rise, found.t))
+
+
+def fitted(t, amplitude, start, end):
+    """Slope of ln(amplitude) over the window, 1/s; NaN with less than four points in it."""
+    inside = (t >= start - 1e-9) & (t <= end + 1e-9)
+    if inside.sum() < 4:
+        return math.nan
+    return float(np.polyfit(t[inside], np.log(np.maximum(amplitude[inside], 1e-12)), 1)[0])
+
+
+def growth(run):
+    """(fitted rate of the run, of the linear solution in the same window) of both waves, 1/s."""
+    m, found, pairs = measured(run), linear(run.scene), []
+    for mode in (0, 1):
+        ends = window(run.scene, mode)
+        pairs.append((fitted(m.t, m.amplitude[mode], *ends), fitted(m.t, interpolated(m.t, found.t, found.rise[mode]), *ends)))
+    return pairs
+
+
+def settled_rates(run):
+    """Rates that the run would have without start and settling: the relation's, times measured over linear; 1/s."""
+    return [n * one / other for n, (one, other) in zip(rates(setting(run.scene)), growth(run))]
+
+
+def published(scene):
+    """Chandrasekhar's rates of the slides: sharp edge, suspension viscosity, 1/s."""
+    fluid = {"rho": scene["fluid"]["density"], "mu": scene["fluid"]["viscosity"]}
+    rho_2 = rayleigh_taylor.EPS * fluid["rho"] + (1.0 - rayleigh_taylor.EPS) * settling.GRAIN["rho_p"]
+    mu_2 = rayleigh_taylor.suspension_viscosity(fluid["mu"], rayleigh_taylor.EPS)
+    return [rayleigh_taylor.growth_rate(k, (fluid["rho"], fluid["mu"]), (rho_2, mu_2)) for k in sedimentation_scene.wave_numbers()]
+
+
+def lowest(scene, t):
+    """Fall of the lowest grain by linear theory, m."""
+    a0, found = start_amplitude(scene), linear(scene)
+    rise = [interpolated(t, found.t, one) for one in found.rise]
+    return np.interp(t, found.t, found.fall) + a0 * (2.0 * (rise[0] - 1.0) + rise[1] - 1.0)
+
+
+def measure(quantity, run):
+    if quantity not in UNITS:
+        return NotImplemented
+    if quantity == "growth":
+        return max(abs(one / other - 1.0) for one, other in growth(run))
+    if quantity == "over_published":
+        return max(one / other for one, other in zip(settled_rates(run), published(run.scene)))
+    a0, m, found = start_amplitude(run.scene), measured(run), linear(run.scene)
+    if quantity == "lowest":
+        last = int(np.searchsorted(m.t, window(run.scene, 0)[1] + 1e-9, side="right")) - 1
+        return float(abs(m.lowest[last] / lowest(run.scene, m.t[last]) - 1.0))
+    worst = 0.0
+    for mode in (0, 1):
+        before = m.t <= window(run.scene, mode)[1] + 1e-9
+        linear_rise = a0 * interpolated(m.t[before], found.t, found.rise[mode])
+        worst = max(worst, float(np.max(np.abs(np.log(np.maximum(m.amplitude[mode][before], 1e-12) / linear_rise)))))
+    return worst
+
+
+def reference(quantity, scene, t):
+    if quantity in UNITS:
+        return 0.0
+    raise KeyError(quantity)
+
+
+# --- the page ---
+
+
+def name(run):
+    return f"{run.variant}, {round(4e-3 / run.scene['fluid']['spacing'])} across"
+
+
+def table(runs):
+    rows = []
+    for run in runs:
+        s = setting(run.scene)
+        fluid = {"rho": s.rho, "mu": s.mu}
+        for mode, (k, n, (one, other), slides) in enumerate(
+                zip(sedimentation_scene.wave_numbers(), rates(s), growth(run), published(run.scene))):
+            sharp = layered.growth_rate(k, fluid, layered.scene_layer(), layered.SHARP, depth=layered.Depth(s.height, s.floor, s.floor))
+            start, end = window(run.scene, mode)
+            rows.append([name(run), f"{k:.0f}", f"{1e3 * start:.0f} to {1e3 * end:.0f}", f"{one:.2f}", f"{other:.2f}", f"{one / other - 1.0:+.3f}",
+                         f"{n:.2f}", f"{n * one / other:.2f}", f"{sharp:.2f}", f"{slides:.2f}"])
+    return {"columns": ["run", "k (1/m)", "window (ms)", "rate of the run", "linear", "error", "relation", "relation x run/linear",
+                        "sharp layer", "slides' reference"], "rows": rows,
+            "caption": "Rates in 1/s. Relation: largest rate of the layer at rest, seen through the kernels; sharp layer: without them, both with mu_2 = mu."}
+
+
+def figures(runs):
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11.0, 4.4), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for number, run in enumerate(runs):
+        a0, m, found, colour = start_amplitude(run.scene), measured(run), linear(run.scene), f"C{number % 10}"
+        for mode, mark in ((0, "o"), (1, "x")):
+            inside = found.t <= m.t[-1] + 1e-9
+            left.plot(1e3 * found.t[inside], a0 * found.rise[mode][inside] * 1e6, "-", color=colour, lw=0.8)
+            left.plot(1e3 * m.t, 1e6 * m.amplitude[mode], mark, color=colour, ms=3.0, mfc="none", label=name(run) if mode == 0 else None)
+        right.plot(1e3 * m.t, 1e6 * lowest(run.scene, m.t), "-", color=colour, lw=0.8)
+        right.plot(1e3 * m.t, 1e6 * m.lowest, "o", color=colour, ms=3.0, mfc="none")
+    for run in {run.variant: run for run in runs if "tenth" not in run.variant}.values():
+        fluid, t = {"rho": run.scene["fluid"]["density"], "mu": run.scene["fluid"]["viscosity"]}, measured(run).t
+        path = rayleigh_taylor.lowest_grain(t, published(run.scene), rayleigh_taylor.settling_slip(fluid, rayleigh_taylor.EPS))
+        right.plot(1e3 * t, 1e6 * path, ":", color="k", lw=1.2)
+    left.set(xlabel="t (ms)", ylabel="amplitude at the lowest layer (μm)", yscale="log")
+    left.legend(fontsize=7)
+    right.set(xlabel="t (ms)", ylabel="fall of the lowest grain (μm)")
+    return [("growth", figure, "Lines: linear theory; circles: runs, wave k; crosses: wave √2 k. Right: lines linear theory, dotted the slides' "
+             "relation growing from t = 0.")]
