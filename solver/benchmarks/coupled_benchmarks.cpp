@@ -16,8 +16,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A periodic box of n^3 particles of 1/n spacing, h = 1.5 spacings, jitter 0.1 dx, and 100 000 grains at random places,
-/// which take a fifth of the room.
+/// A periodic box of n^3 particles of 1/n spacing, h = 1.5 spacings, jitter 0.1 dx, and 100 000 grains at random
+/// places, which take a fifth of the room.
 struct Scene {
     SphFluid fluid;
     Weights weights;
@@ -98,12 +98,13 @@ bool register_all() {
     for (const Box& b : {Box{"coupled_dense", 22}, Box{"coupled_dilute", 100}})
         for (const int threads : {1, 2}) {
             const std::string tail = "/100000/threads:" + std::to_string(threads);
-            benchmark::RegisterBenchmark((b.name + tail).c_str(),
-                                         [b, threads](benchmark::State& s) { couple_repeatedly(s, b.n, threads); })
-                ->Unit(benchmark::kMillisecond);
-            benchmark::RegisterBenchmark((std::string(b.name) + "_lists" + tail).c_str(),
-                                         [b, threads](benchmark::State& s) { list_repeatedly(s, b.n, threads); })
-                ->Unit(benchmark::kMillisecond);
+            benchmark::RegisterBenchmark((b.name + tail).c_str(), [b, threads](benchmark::State& s) {
+                couple_repeatedly(s, b.n, threads);
+            })->Unit(benchmark::kMillisecond);
+            benchmark::RegisterBenchmark((std::string(b.name) + "_lists" + tail).c_str(), [b, threads](
+                                                                                              benchmark::State& s) {
+                list_repeatedly(s, b.n, threads);
+            })->Unit(benchmark::kMillisecond);
         }
     return true;
 }

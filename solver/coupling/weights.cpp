@@ -192,7 +192,7 @@ void place_grains(Weights& w, const Domain& domain, const GrainPlaces& grains) {
 
 std::int64_t gather(Weights& w, const SphFluid& f, const std::vector<double>& mass, bool with_load, GatheredFluid& at) {
     const std::size_t n = mass.size();
-    at.u.resize(n), at.a.resize(n), at.stress.resize(n), at.eps.resize(n), at.load.assign(n, 0.0);
+    at.u.resize(n), at.a.resize(n), at.stress.resize(n), at.eps.resize(n), at.dry.resize(n), at.load.assign(n, 0.0);
     with_kernel(w.kernel, [&](const auto& law) {
         using Law = std::decay_t<decltype(law)>;
         for_each_group(w.grains.count, [&](std::size_t group) {
@@ -201,6 +201,7 @@ std::int64_t gather(Weights& w, const SphFluid& f, const std::vector<double>& ma
             store(w.gather_sum, group, sums.gather);
             for_each_grain_of(w, group, [&](std::size_t id, int lane) {
                 const double total = sums.gather[lane], over_total = total > 0.0 ? 1.0 / total : 0.0;
+                at.dry[id] = total > 0.0 ? 0 : 1;
                 at.eps[id] = total > 0.0 ? over_total * sums.eps[lane] : 1.0;
                 for (std::size_t c = 0; c < 3; ++c) {
                     at.u[id][static_cast<Eigen::Index>(c)] = over_total * sums.u[c][lane];

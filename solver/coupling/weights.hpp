@@ -64,6 +64,7 @@ struct GatheredFluid {
     std::vector<Vec3> a;      // acceleration without the forces of the grains [m/s2]
     std::vector<Vec3> stress; // -grad P + div tau [N/m3]
     std::vector<double> eps;  // fluid fraction
+    std::vector<char> dry;    // 1 where no particle is in reach
     std::vector<double> load; // mass of grains over mass of fluid, where the grain's force goes; 0 one way
 
     bool wants_gradient = false;           // set where a force needs it

@@ -57,7 +57,8 @@ void write_fluid(Hdf5Writer& file, const FluidOnGrains& fluid) {
     write_field(file, "fluid/last_drag", fluid.last_drag);
     write_field(file, "fluid/last_fluid_force", fluid.last_fluid_force);
     file.write("fluid/re_range", std::vector<double>{fluid.range_use.re_min, fluid.range_use.re_max});
-    file.write("fluid/range_use", std::vector<std::int64_t>{fluid.range_use.inside, fluid.range_use.outside});
+    file.write("fluid/range_use",
+               std::vector<std::int64_t>{fluid.range_use.inside, fluid.range_use.outside, fluid.range_use.dry});
 }
 
 /// Fields of the smoothed particles in the order of ids; `visit` takes a name and the field.
@@ -258,9 +259,9 @@ void Loader::load_fluid(FluidOnGrains& fluid, std::size_t n) const {
     read_field("fluid/last_drag", fluid.last_drag, n);
     read_field("fluid/last_fluid_force", fluid.last_fluid_force, n);
     const std::vector<double> re = doubles("fluid/re_range", 2);
-    const std::vector<std::int64_t> use = integers("fluid/range_use", 2);
+    const std::vector<std::int64_t> use = integers("fluid/range_use", 3);
     fluid.range_use.re_min = re[0], fluid.range_use.re_max = re[1];
-    fluid.range_use.inside = use[0], fluid.range_use.outside = use[1];
+    fluid.range_use.inside = use[0], fluid.range_use.outside = use[1], fluid.range_use.dry = use[2];
 }
 
 void Loader::load_boundary(BoundaryParticles& b, int dimensions) const {

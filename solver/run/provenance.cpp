@@ -75,8 +75,11 @@ std::string provenance_json(const Scene& scene, const Simulation& simulation, co
     for (const StepLimit& limit : simulation.timing.limits) j["limits"][limit.name] = limit.seconds;
     if (simulation.fluid) {
         const RangeUse& use = simulation.fluid->range_use;
-        j["drag_range"] = {
-            {"re_min", use.re_min}, {"re_max", use.re_max}, {"inside", use.inside}, {"outside", use.outside}};
+        j["drag_range"] = {{"re_min", use.re_min},
+                           {"re_max", use.re_max},
+                           {"inside", use.inside},
+                           {"outside", use.outside},
+                           {"dry", use.dry}};
     }
     if (simulation.coupling) {
         const Coupling& c = *simulation.coupling;

@@ -173,6 +173,10 @@ std::string closing_line(const Run& run, const ResultFolder& folder, const Cost&
                             law_name(run.simulation.fluid->drag),
                             100.0 * static_cast<double>(use.outside) / static_cast<double>(use.inside + use.outside),
                             use.re_min, use.re_max);
+    if (use.dry > 0)
+        text +=
+            fmt::format("\ngrains had no fluid in reach in {:.2g} % of the steps, and fell freely",
+                        100.0 * static_cast<double>(use.dry) / static_cast<double>(use.inside + use.outside + use.dry));
     return text;
 }
 

@@ -38,6 +38,10 @@ std::vector<Vec3> received_from_fluid(const FluidOnGrains& f, const GrainSystem&
         const auto id = static_cast<std::size_t>(g.id[k]);
         const bool alone =
             g.mobility[k] > 0.0 && system.groups[static_cast<std::size_t>(g.group[k])].motion == Motion::free;
+        if (f.at_grains.dry[id] != 0) {
+            force[id].setZero();
+            return;
+        }
         force[id] = (alone ? Vec3(f.forcing.impulse[k] / dt) : f.last_fluid_force[id]) -
                     force_from_outside(f, 2.0 * g.radius[k], system.domain.gravity);
     });

@@ -21,7 +21,8 @@ FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid);
 void drive(Table& coupling, SphFluid& fluid, FluidOnGrains& on_grains, const Coupling& state,
            const GrainSystem& grains);
 
-/// Limits of the fluid's step among the grains: friction is the greatest that the closure allows.
+/// Limits of the fluid's step among the grains: friction is the greatest that the closure allows,
+/// and acts on the least mass.
 std::vector<StepLimit> coupled_limits(const SphFluid& fluid, const Coupling& coupling);
 
 /// Steps of the grains in one of the fluid: what their limits ask for, or `time.grain_step`.

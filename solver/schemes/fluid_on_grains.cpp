@@ -26,6 +26,7 @@ struct OneForcing {
     Vec3 u = Vec3::Zero();     // fluid velocity at the middle of the step [m/s]
     double re = 0.0;           // superficial, at the middle of the step
     double eps = 1.0;
+    bool dry = false; // no fluid is near
 };
 
 LocalFluid local_fluid(const FluidOnGrains& f, const Domain& domain, const Vec3& x, double t) {
@@ -97,17 +98,35 @@ Vec3 other_forces(const FluidOnGrains& f, const LocalFluid& local, const LocalGr
     return sum;
 }
 
+/// Where the fluid is a computed one: mass of grains over that of the fluid which drags them; no fluid is near.
+double load_of(const FluidOnGrains& f, std::int32_t id) {
+    return f.gathers ? f.at_grains.load[static_cast<std::size_t>(id)] : 0.0;
+}
+bool is_dry(const FluidOnGrains& f, std::int32_t id) {
+    return f.gathers && f.at_grains.dry[static_cast<std::size_t>(id)] != 0;
+}
+
+/// Nothing acts on a grain without fluid.
+OneForcing no_forcing(const Vec3& velocity) {
+    OneForcing one;
+    one.u = velocity;
+    one.dry = true;
+    return one;
+}
+
 OneForcing forcing_of_grain(FluidOnGrains& f, const GrainSystem& system, const BassetKernel* kernel, std::size_t k,
                             double dt) {
     const Grains& g = system.grains;
     const double d = 2.0 * g.radius[k], mobility = g.mobility[k];
     const Vec3 v = g.v[k];
+    if (is_dry(f, g.id[k])) return no_forcing(v);
     const LocalFluid local = fluid_at_grain(f, system, k, dt);
     // Where grains of mass load times that of the fluid around drag it along, the slip w = v - u obeys
     //     dw/dt = g - a - (1 + load) beta w,    and v = c + w/(1 + load)
     // with the velocity c of both together, which drag does not change: the grain relaxes (1 + load) times as fast,
     // towards c.
-    const double load = f.gathers ? f.at_grains.load[static_cast<std::size_t>(g.id[k])] : 0.0, both = 1.0 + load;
+    const double load = load_of(f, g.id[k]), both = 1.0 + load;
+    const Vec3 outside = load > 0.0 ? force_from_outside(f, d, system.domain.gravity) : Vec3(Vec3::Zero());
     OneForcing one;
     one.eps = local.eps;
     const Vec3 history = history_of_grain(f, system, kernel, k, local, dt);
@@ -119,7 +138,10 @@ OneForcing forcing_of_grain(FluidOnGrains& f, const GrainSystem& system, const B
     for (int pass = 0; pass < (f.forces.empty() ? 1 : 2); ++pass) {
         one.other = mobility * (other_forces(f, local, grain, system.domain.gravity) + history);
         const Vec3 acceleration = g.a[k] + one.other;
-        one.u = (local.u + load * (v + (0.5 * dt) * acceleration)) / both;
+        // What the grain receives but by drag the fluid loses: its mass times the acceleration, less what comes from
+        // contacts, gravity and outside; `local.u` does not know of it.
+        const Vec3 lost = acceleration - g.a[k] / (mobility * g.mass[k]) - outside / g.mass[k];
+        one.u = (local.u + load * (v + (0.5 * dt) * (acceleration - lost))) / both;
         std::visit(
             [&](const auto& exchange) {
                 one.rate = mid_step_rate(exchange, rate, v - one.u, acceleration, dt);
@@ -179,6 +201,24 @@ void write_forcing(FluidOnGrains& f, const GrainSystem& system, std::size_t k, c
     f.last_fluid_force[id] = f.last_drag[id] + inertia * own.other + (inertia - g.mass[k]) * g.v[k] / dt;
 }
 
+/// Mean slip over the step of a grain of given velocity: a computed fluid near it slows down, by the drag at `load`
+/// times the rate per mass of grains, and by the other forces.
+Vec3 mean_slip(const FluidOnGrains& f, const LocalFluid& local, const Grains& g, std::size_t k, const Vec3& other,
+               double dt) {
+    Vec3 slip = local.u - g.v[k];
+    if (!f.gathers) return slip;
+    const auto id = static_cast<std::size_t>(g.id[k]);
+    const double d = 2.0 * g.radius[k], load = load_of(f, g.id[k]);
+    const Vec3 start = f.at_grains.u[id] - g.v[k], a = f.at_grains.a[id] - (load / g.mass[k]) * other;
+    for (int pass = 0; pass < 4; ++pass) { // the rate is that of the mean slip
+        const double rate =
+            load / g.mass[k] * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip.norm());
+        const StepWeights w = std::visit([&](const auto& exchange) { return exchange(rate * dt); }, f.exchange);
+        slip = w.phi1 * start + (dt * w.phi2) * a;
+    }
+    return slip;
+}
+
 /// A fixed grain does not respond, but it feels the fluid: the forces are those at its given velocity.
 OneForcing write_fixed(FluidOnGrains& f, const GrainSystem& system, const BassetKernel* kernel, std::size_t k,
                        double dt) {
@@ -187,12 +227,16 @@ OneForcing write_fixed(FluidOnGrains& f, const GrainSystem& system, const Basset
     f.forcing.phi2[k] = 0.5;
     f.forcing.drive[k].setZero();
     const double d = 2.0 * g.radius[k];
-    const LocalFluid local = fluid_at_grain(f, system, k, dt);
-    const Vec3 slip = local.u - g.v[k];
     const auto id = static_cast<std::size_t>(g.id[k]);
+    if (is_dry(f, g.id[k])) {
+        f.last_drag[id] = f.last_fluid_force[id] = Vec3::Zero();
+        return no_forcing(g.v[k]);
+    }
+    const LocalFluid local = fluid_at_grain(f, system, k, dt);
+    const Vec3 other = other_forces(f, local, {d, g.v[k]}, system.domain.gravity);
+    const Vec3 slip = mean_slip(f, local, g, k, other - force_from_outside(f, d, system.domain.gravity), dt);
     f.last_drag[id] = drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip.norm()) * slip;
-    f.last_fluid_force[id] = f.last_drag[id] + other_forces(f, local, {d, g.v[k]}, system.domain.gravity) +
-                             history_of_grain(f, system, kernel, k, local, dt);
+    f.last_fluid_force[id] = f.last_drag[id] + other + history_of_grain(f, system, kernel, k, local, dt);
     OneForcing one;
     one.re = f.density * d * local.eps * slip.norm() / f.viscosity;
     one.eps = local.eps;
@@ -202,6 +246,10 @@ OneForcing write_fixed(FluidOnGrains& f, const GrainSystem& system, const Basset
 void count_range(FluidOnGrains& f, const std::vector<OneForcing>& all) {
     const DragRange& range = drag_range(f.drag);
     for (const OneForcing& one : all) {
+        if (one.dry) {
+            ++f.range_use.dry;
+            continue;
+        }
         f.range_use.re_min = std::min(f.range_use.re_min, one.re);
         f.range_use.re_max = std::max(f.range_use.re_max, one.re);
         ++(within(range, one.re, one.eps) ? f.range_use.inside : f.range_use.outside);

@@ -20,6 +20,7 @@ namespace plumb {
 struct RangeUse {
     double re_min = std::numeric_limits<double>::infinity(), re_max = 0.0; // superficial
     std::int64_t inside = 0, outside = 0;                                  // evaluations
+    std::int64_t dry = 0; // evaluations without a particle of the fluid in reach: nothing acts on the grain
 };
 
 struct FluidOnGrains {

@@ -109,6 +109,62 @@ TEST(Coupled, SameBitsForAnyNumberOfThreads) {
     }
 }
 
+// Drag beside other forces is exchanged to second order too: the fluid's velocity in the middle of a step knows what
+// all of them took from it. Halving the step quarters the change.
+TEST(Coupled, ExchangeIsOfSecondOrder) {
+    for (const char* motion : {"\"free\"", "\"fixed\""}) {
+        const auto speed = [&](int steps) {
+            Bench bench(
+                Keys{{"grains.motion", motion},
+                     {"grains.arrange", "{law = \"lattice\", kind = \"cubic\", lower = [0.0, 0.0, 0.0], upper = "
+                                        "[1.6e-3, 1.6e-3, 1.6e-3], spacing = 1.3333333333333333e-4}"},
+                     {"coupling.forces", "[\"pressure_gradient\"]"},
+                     {"coupling.mean_pressure_gradient", "[0.0, 0.0, -4000.0]"},
+                     {"fluid.sound_speed", "1.0"},
+                     {"time.step", fmt::format("{:.17g}", 8e-4 / steps)},
+                     {"time.output_interval", "8e-4"},
+                     {"time.end", "8e-4"}});
+            advance(bench.simulation, steps);
+            return bench.fluid().v[2][0];
+        };
+        const double coarse = speed(16), middle = speed(32), fine = speed(64);
+        EXPECT_GT((coarse - middle) / (middle - fine), 3.4) << motion;
+        EXPECT_LT((coarse - middle) / (middle - fine), 4.6) << motion;
+    }
+}
+
+// A grain with no particle in reach falls freely: neither drag of a fluid that is not there nor its buoyancy.
+TEST(Coupled, GrainsWithoutFluidFallFreely) {
+    const Keys keys{{"domain.size", "[1.6e-3, 1.6e-3, 4e-3]"},
+                    {"domain.periodic", "[true, true, false]"},
+                    {"domain.gravity", "[0.0, 0.0, -9.81]"},
+                    {"fluid.pressure", "\"full\""},
+                    {"fluid.free_surface", "true"},
+                    {"fluid.fill", "{law = \"box\", lower = [0.0, 0.0, 0.0], upper = [1.6e-3, 1.6e-3, 1.6e-3]}"},
+                    {"grains.arrange", "{law = \"single\", position = [0.8e-3, 0.8e-3, 3.5e-3]}"},
+                    {"coupling.forces", "[\"pressure_gradient\"]"},
+                    {"coupling.mean_pressure_gradient", ""}};
+    Bench bench(coupled_scene_text(keys) + "[[wall]]\nname = \"floor\"\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\n"
+                                           "normal = [0.0, 0.0, 1.0]\nslip = \"no_slip\"\ncontact = \"none\"\n");
+    advance(bench.simulation, 10);
+    EXPECT_NEAR(bench.grains().v[0][2], -9.81 * 10 * 2e-4, 1e-15);
+    EXPECT_EQ(bench.simulation.fluid->range_use.dry, 10);
+}
+
+// The friction of a particle acts on the mass that it has.
+TEST(Coupled, ViscousLimitKnowsThePorosity) {
+    const auto limit = [](const char* mass) {
+        Bench bench(Keys{{"coupling.fluid_mass", mass},
+                         {"grains.arrange", "{law = \"lattice\", kind = \"cubic\", lower = [0.0, 0.0, 0.0], upper = "
+                                            "[1.6e-3, 1.6e-3, 1.6e-3], spacing = 1.3333333333333333e-4}"}});
+        for (const StepLimit& one : bench.simulation.timing.limits)
+            if (one.name == "viscous") return one.seconds;
+        return 0.0;
+    };
+    const double eps = 1.0 - sphere_volume(1e-4) / std::pow(1.6e-3 / 12.0, 3);
+    EXPECT_NEAR(limit("\"displaced\"") / limit("\"pure\""), eps, 1e-3);
+}
+
 // One way: the fluid feels nothing of the grains but the room they take, which moves it to and fro.
 TEST(Coupled, OneWayLeavesTheFluidAlone) {
     Bench bench(Keys{{"coupling.direction", "\"one_way\""}, {"coupling.mean_pressure_gradient", ""}});
@@ -147,6 +203,7 @@ TEST(Coupled, BadScenesAreInputErrors) {
     refused({{"fluid.operators", "{law = \"variable_h\", greatest_growth = 1.01}"}},
             {"coupling.porosity_width", "eps", "greatest_growth = 1.08"});
     refused({{"fluid.operators", "{law = \"variable_h\", greatest_growth = 0.9}"}}, {"fluid.operators", "0.9"});
+    refused({{"fluid.density_diffusion", "0.1"}}, {"coupling.direction", "density_diffusion"});
     refused({{"time.grain_step", ""}}, {"time.grain_step: missing"});
     refused({{"time.grain_step", "-1.0"}}, {"time.grain_step", "-1"});
     refused({{"grains.arrange", "\"none\""}}, {"grains"});
