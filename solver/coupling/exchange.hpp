@@ -10,6 +10,7 @@
 #include "core/laws.hpp"
 #include "core/vec.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
@@ -66,22 +67,29 @@ using Exchange = std::variant<ExponentialExchange, ImplicitExchange, ExplicitExc
 /// Drag rate beta [1/s] at the middle of a step of `dt` seconds that starts with `slip` = v - u [m/s] under the
 /// acceleration `g` [m/s2] by all other forces. `rate(speed)` is beta at a slip of `speed` [m/s], not decreasing.
 ///
-/// Fixed-point iteration with the geometric mean of old and new rate. Where the step is long, the slip at its middle is
-/// g/beta, so for beta ~ slip^p the plain iteration multiplies the logarithmic error by -p and would not end at p = 1
-/// (constant drag coefficient); the mean multiplies it by (1 - p)/2, at most 1/2 for any 0 <= p <= 1 (Stokes to
-/// Newton).
+/// The root of F(x) = ln rate(slip at the middle for beta = e^x) - x by the secant rule. Where the step is long, the slip
+/// at its middle is g/beta, so for beta ~ slip^p the slope of F is -(1 + p), between -1 (Stokes) and -2 (Newton) for any
+/// step. The first change, and all from the twentieth on (a law with jumps), take the slope -2, with which the error is
+/// at least halved.
 template <class ExchangeLaw, class Rate>
 double mid_step_rate(const ExchangeLaw& exchange, const Rate& rate, const Vec3& slip, const Vec3& g, double dt) {
     const double tolerance = 1e-13; // relative; a few rounding errors
-    double beta = rate(slip.norm());
+    double beta = rate(slip.norm()), before = 0.0, change = 0.0; // F and the change of x in the last pass
     for (int k = 0; k < ExchangeLaw::most_iterations; ++k) {
         const StepWeights half = exchange(0.5 * beta * dt);
         const double found = rate((half.phi0 * slip + (0.5 * dt * half.phi1) * g).norm());
-        // A law without a linear part starts from rest with beta = 0, which the mean would never leave.
-        const double next = ExchangeLaw::most_iterations == 1 || beta == 0.0 ? found : std::sqrt(beta * found);
-        const bool settled = std::abs(next - beta) <= tolerance * beta;
-        beta = next;
-        if (settled) break;
+        // A law without a linear part starts from rest with beta = 0, whose logarithm no change would bring up.
+        if (ExchangeLaw::most_iterations == 1 || beta == 0.0 || found == 0.0) {
+            const bool settled = found == beta;
+            beta = found, change = 0.0;
+            if (settled) break;
+            continue;
+        }
+        const double f = std::log(found / beta);
+        const double steepness = change == 0.0 || k >= 20 ? 2.0 : std::clamp((before - f) / change, 0.9, 2.2);
+        before = f, change = f / steepness;
+        beta *= std::exp(change);
+        if (std::abs(change) <= tolerance) break;
     }
     return beta;
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <limits>
 
 namespace plumb {
@@ -22,7 +23,9 @@ constexpr double contact_rate = 2e7; // grain steps per second with contacts
 constexpr double fluid_rate = 2e6;   // with a fluid: drag law and step weights of every grain
 constexpr double particle_rate = 4e6, particle_rate_plane = 1e7; // particle updates of smoothed particles
 constexpr double bytes_per_particle = 450.0;
-constexpr double step_cost = 2e-6; // fixed cost of a step [s]
+constexpr double weight_rate = 2e8, bytes_per_weight = 4.0; // of the coupling, each used three times a step
+constexpr double wake_cost = 1e-6;                          // of a grain's own wake [s]
+constexpr double step_cost = 2e-6;                          // fixed cost of a step [s]
 
 // Memory [bytes]: what the fields and lists of the engine take, with six neighbours per grain in the list.
 constexpr double bytes_per_grain = 500.0, bytes_per_pair = 150.0, pairs_per_grain = 6.0, bytes_of_program = 2e7;
@@ -125,13 +128,30 @@ Json sph_part(const Simulation& s) {
             {"artificial_nu", artificial_nu(f)}};
 }
 
+/// Seconds on one core and bytes that the grains of a coupled scene add to a step of the fluid.
+struct CouplingCost {
+    double seconds = 0.0, bytes = 0.0;
+};
+CouplingCost coupling_cost(const Simulation& s) {
+    if (!s.coupling) return {};
+    const double n = static_cast<double>(s.grains.grains.size()),
+                 reach_in_spacings = reach(s.coupling->weights) / s.sph->spacing;
+    const double weights = n * 4.0 / 3.0 * std::numbers::pi * std::pow(reach_in_spacings, 3);
+    const bool corrected = s.coupling->self.has_value();
+    return {3.0 * weights / weight_rate + static_cast<double>(s.coupling->grain_steps) * n / contact_rate +
+                n / fluid_rate + (corrected ? n * wake_cost : 0.0),
+            n * (bytes_per_grain + (corrected ? 8.0 * static_cast<double>(wake_size()) : 0.0)) +
+                bytes_per_weight * weights};
+}
+
 Json sph_cost_part(const Run& run) {
     const Simulation& s = run.simulation;
     const double n = static_cast<double>(s.sph->particles), steps = static_cast<double>(total_steps(s.timing));
     const double rate = s.sph->dimensions == 2 ? particle_rate_plane : particle_rate;
+    const CouplingCost grains = coupling_cost(s);
     return {{"grain_steps", n * steps},
-            {"memory_bytes", bytes_of_program + bytes_per_particle * n},
-            {"wall_s", steps * (step_cost + n / (rate * thread_count()))},
+            {"memory_bytes", bytes_of_program + bytes_per_particle * n + grains.bytes},
+            {"wall_s", steps * (step_cost + (n / rate + grains.seconds) / thread_count())},
             {"nominal_rate", rate},
             {"threads", thread_count()}};
 }

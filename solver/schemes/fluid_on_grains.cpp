@@ -134,8 +134,9 @@ OneForcing forcing_of_grain(FluidOnGrains& f, const GrainSystem& system, const B
         return both * mobility * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, both * slip);
     };
     // Lift depends on the velocity: a first pass at the start of the step finds the velocity at its middle.
+    const int passes = std::any_of(f.forces.begin(), f.forces.end(), needs_gradient) ? 2 : 1;
     LocalGrain grain{d, v};
-    for (int pass = 0; pass < (f.forces.empty() ? 1 : 2); ++pass) {
+    for (int pass = 0; pass < passes; ++pass) {
         one.other = mobility * (other_forces(f, local, grain, system.domain.gravity) + history);
         const Vec3 acceleration = g.a[k] + one.other;
         // What the grain receives but by drag the fluid loses: its mass times the acceleration, less what comes from

@@ -121,7 +121,7 @@ TEST(Exchange, MidStepRateConverges) {
                     calls = 0;
                     const Vec3 w(slip, 0.0, 0.0), g(0.0, 0.0, -9.81);
                     const double beta = mid_step_rate(exchange, rate, w, g, dt);
-                    EXPECT_LE(calls, 101);
+                    EXPECT_LE(calls, 15);
                     const StepWeights half = exchange(0.5 * beta * dt);
                     const double found = rate((half.phi0 * w + 0.5 * dt * half.phi1 * g).norm());
                     EXPECT_NEAR(found, beta, 1e-11 * beta) << power << " " << dt << " " << slip;

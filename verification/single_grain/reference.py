@@ -184,10 +184,10 @@ def figures(runs):
         left.plot(s.h / s.d, _percent(s, v[-1]), "x", color=FLUIDS[fluid_of(run)][0], ms=5)
     left.plot([], [], "x", color="0.3", ms=5, label="one way")
     left.axhspan(-2.0, 2.0, color="0.9", zorder=0, label="claim of the slides, h > 2 d")
-    left.set(title="as published: error at the end (circles: runs, lines: theory)", xlabel="h/d (-)", ylabel="error of the settling velocity (%)")
+    left.set(title="not corrected: error at the end (lines: theory)", xlabel="h/d (-)", ylabel="error of the settling velocity (%)")
     right.plot([1.0, 2.0, 2.0, 6.3], [3.0, 3.0, 0.5, 0.5], "k-", lw=0.8, label="bound, liquids")
     right.plot([2.0, 6.3], [1.0, 1.0], "k--", lw=0.8, label="bound, air")
-    right.set(title="own disturbance taken out: greatest error from 5 τ_p on", xlabel="h/d (-)", ylabel="|error| (%)", yscale="log", ylim=(0.01, 30.0))
+    right.set(title="corrected: greatest error from 5 τ_p on", xlabel="h/d (-)", ylabel="|error| (%)", yscale="log", ylim=(0.01, 30.0))
     for axes in (left, right):
         axes.legend(fontsize=7)
     histories = Figure(figsize=(10.0, 4.2), layout="constrained")
