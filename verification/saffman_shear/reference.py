@@ -231,3 +231,66 @@ def measure(quantity, run):
     if quantity == "momentum":
         return momentum(run)
     return NotImplemented
+
+
+def by_name(runs, *names):
+    finest = {}
+    for run in runs:
+        if not run.failure and run.variant in names:
+            finest[run.variant] = run
+    return [finest[name] for name in names if name in finest]
+
+
+def drift_figure(runs):
+    """Velocity across the flow over Saffman's own, 1.615/(3 pi) d sqrt(G/nu) w, with G at the start (Couette: in the end)."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10.0, 3.8), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for n, run in enumerate(by_name(runs, "leading", "lagging", "li_ahmadi", "two_way", "couette")):
+        s, (t, v) = Scene(run.scene), measure("across", run)
+        left.plot(t / t[-1], motion(s, s.flow(), t)[1] / scale(s), "-", color=f"C{n}", lw=0.8)
+        left.plot(t / t[-1], v / scale(s), "os^dv"[n], ms=4, mfc="none", color=f"C{n}", label=f"{run.variant}, {1e3 * t[-1]:.3g} ms")
+    for n, run in enumerate(by_name(runs, "wake_alone", "wake_corrected", "wake_and_law")):
+        s, (t, v) = Scene(run.scene), measure("across", run)
+        right.plot(1e3 * t, with_wake(run.scene, t)[1] / scale(s), "-", color=f"C{n}", lw=0.8)
+        right.plot(1e3 * t, motion(s, s.flow(), t)[1] / scale(s), ":", color=f"C{n}", lw=0.8)
+        right.plot(1e3 * t, v / scale(s), "os^"[n], ms=4, mfc="none", color=f"C{n}", label=run.variant)
+    left.set_xlabel("time over that of the run [-]")
+    right.set_xlabel("time [ms]")
+    left.set_ylabel("velocity across, over Saffman's at the start [-]")
+    for axes in (left, right):
+        axes.axhline(0.0, color="0.7", lw=0.6)
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(fontsize="x-small")
+    return figure
+
+
+def scale(s):
+    if s.walls:
+        shear = s.walls[1]["velocity"][0] / (0.5 * s.size[1])
+    else:
+        shear = s.wave()[0] * s.wave()[1]
+    return 6.46 / 4.0 / (3.0 * math.pi) * s.d * math.sqrt(shear / s.nu) * abs(s.weight) / s.stokes
+
+
+def share_figure():
+    """Saffman's lift that the scheme's own wake makes, over h sqrt(G/nu), after strains of 0.3 to 30."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.0, 3.8), layout="constrained")
+    axes, width = figure.subplots(), np.geomspace(0.05, 5.0, 13)
+    for strain in (0.3, 1.0, 3.0, 30.0):
+        share = [sheared_wake.of_constant_push(self_disturbance.one_kernel("wendland_c2", h), 1.0, 1.0, 1.0, 1.0, strain)
+                 / sheared_wake.saffman_share(1.0, 1.0, 1.0, 1.0) for h in width]
+        axes.semilogx(width, share, label=f"strain {strain:g}")
+    axes.set_ylim(0.0, 1.0)
+    axes.set_xlabel("h sqrt(G/nu) [-]")
+    axes.set_ylabel("drift by the wake over Saffman's [-]")
+    axes.legend(fontsize="small")
+    return figure
+
+
+def figures(runs):
+    return [("drift", drift_figure(runs), "Symbols: runs. Left, full lines: equation (3). Right: (4), dotted (3), which without a law is nothing."),
+            ("share", share_figure(), "Equation (4) for a constant push in a constant shear, Wendland C2 for all, Morris' operator.")]
