@@ -251,11 +251,11 @@ def drift_figure(runs):
         s, (t, v) = Scene(run.scene), measure("across", run)
         left.plot(t / t[-1], motion(s, s.flow(), t)[1] / scale(s), "-", color=f"C{n}", lw=0.8)
         left.plot(t / t[-1], v / scale(s), "os^dv"[n], ms=4, mfc="none", color=f"C{n}", label=f"{run.variant}, {1e3 * t[-1]:.3g} ms")
-    for n, run in enumerate(by_name(runs, "wake_alone", "wake_corrected", "wake_and_law")):
+    for n, run in enumerate(by_name(runs, "wake_alone", "wake_corrected", "wake_and_law", "wake_small")):
         s, (t, v) = Scene(run.scene), measure("across", run)
         right.plot(1e3 * t, with_wake(run.scene, t)[1] / scale(s), "-", color=f"C{n}", lw=0.8)
         right.plot(1e3 * t, motion(s, s.flow(), t)[1] / scale(s), ":", color=f"C{n}", lw=0.8)
-        right.plot(1e3 * t, v / scale(s), "os^"[n], ms=4, mfc="none", color=f"C{n}", label=run.variant)
+        right.plot(1e3 * t, v / scale(s), "os^d"[n], ms=4, mfc="none", color=f"C{n}", label=run.variant)
     left.set_xlabel("time over that of the run [-]")
     right.set_xlabel("time [ms]")
     left.set_ylabel("velocity across, over Saffman's at the start [-]")
