@@ -21,7 +21,7 @@ GOAL = {"glycerol": 8.0, "water": 20.0}  # of as_code's CPU seconds over plumb_g
 BOUND = 0.005
 LABELS = {"as_code": "as_code", "as_code_quiet": "as_code, masses at rest", "as_slides": "as_slides", "implicit": "as_code, exponential exchange",
           "dynamic": "as_code, dynamic pressure", "dynamic_implicit": "dynamic, exponential exchange", "plain": "plumb_grains, not corrected",
-          "one_way": "plumb_grains, one way", "plumb": "plumb_grains", "c4": "plumb_grains, C4, h = 2 spacings"}
+          "one_way": "plumb_grains, one way", "plumb": "plumb_grains", "c4": "plumb_grains, C4, h = 1.95 spacings"}
 
 
 def lone(scene):
@@ -90,13 +90,14 @@ def figures(runs):
         for number, (scheme, label) in enumerate(LABELS.items()):
             if (fluid, scheme) in found:
                 same = found[fluid, scheme]
-                axes.plot(cost(same), 100.0 * measure("off_law", same[0]), "o" if scheme != "plumb" else "*", ms=7 if scheme != "plumb" else 13,
-                          color=f"C{number}", label=label)
+                mark, size = {"plumb": ("*", 13), "implicit": ("x", 5), "dynamic_implicit": ("x", 5)}.get(scheme, ("o", 7))
+                axes.plot(cost(same), 100.0 * measure("off_law", same[0]), mark, ms=size, color="k" if mark == "x" else f"C{number}",
+                          mew=1.0 if mark == "x" or scheme == "plumb" else 0.0, label=label)
         if (fluid, "as_code") in found:
             goal = cost(found[fluid, "as_code"]) / GOAL[fluid]
             axes.axvline(goal, color="0.4", lw=0.8, ls="--", label=f"as_code/{GOAL[fluid]:g}")
         axes.axhline(100.0 * BOUND, color="0.4", lw=0.8, label="0.5 %")
         axes.set(title=FLUIDS[fluid], xlabel="CPU seconds", xscale="log", yscale="log")
-        axes.legend(fontsize=7)
+        axes.legend(fontsize=7, loc="lower right", framealpha=1.0)
     figure.axes[0].set_ylabel("greatest error of the speed from 5 τ_p on (% of u_t)")
     return [("error_by_cost", figure, "Error against CPU seconds of one grain at h/d = 3, 50 tau_p; one core, runs one after the other; medians where repeated.")]
