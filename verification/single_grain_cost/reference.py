@@ -86,18 +86,21 @@ def figures(runs):
     from matplotlib.figure import Figure
 
     figure, found = Figure(figsize=(11.0, 4.6), layout="constrained"), groups(runs)
-    for axes, fluid in zip(figure.subplots(1, 2, sharey=True), FLUIDS):
+    *panels, key = figure.subplots(1, 3, sharey=True, gridspec_kw={"width_ratios": [1.0, 1.0, 0.6]})
+    for axes, fluid in zip(panels, FLUIDS):
         for number, (scheme, label) in enumerate(LABELS.items()):
             if (fluid, scheme) in found:
                 same = found[fluid, scheme]
-                mark, size = {"plumb": ("*", 13), "implicit": ("x", 5), "dynamic_implicit": ("x", 5)}.get(scheme, ("o", 7))
-                axes.plot(cost(same), 100.0 * measure("off_law", same[0]), mark, ms=size, color="k" if mark == "x" else f"C{number}",
-                          mew=1.0 if mark == "x" or scheme == "plumb" else 0.0, label=label)
+                mark, size = {"plumb": ("*", 13), "implicit": ("x", 5), "dynamic_implicit": ("+", 7)}.get(scheme, ("o", 7))
+                axes.plot(cost(same), 100.0 * measure("off_law", same[0]), mark, ms=size, color="k" if mark in "x+" else f"C{number}",
+                          mew=1.0 if mark in "x+*" else 0.0, label=label)
         if (fluid, "as_code") in found:
             goal = cost(found[fluid, "as_code"]) / GOAL[fluid]
-            axes.axvline(goal, color="0.4", lw=0.8, ls="--", label=f"as_code/{GOAL[fluid]:g}")
+            axes.axvline(goal, color="0.4", lw=0.8, ls="--", label="goal: as_code/8, as_code/20")
         axes.axhline(100.0 * BOUND, color="0.4", lw=0.8, label="0.5 %")
         axes.set(title=FLUIDS[fluid], xlabel="CPU seconds", xscale="log", yscale="log")
-        axes.legend(fontsize=7, loc="lower right", framealpha=1.0)
+    handles = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels())}
+    key.legend(handles.values(), handles.keys(), loc="center left", fontsize=8)
+    key.axis("off")
     figure.axes[0].set_ylabel("greatest error of the speed from 5 τ_p on (% of u_t)")
     return [("error_by_cost", figure, "Error against CPU seconds of one grain at h/d = 3, 50 tau_p; one core, runs one after the other; medians where repeated.")]
