@@ -67,13 +67,13 @@ using Exchange = std::variant<ExponentialExchange, ImplicitExchange, ExplicitExc
 /// Drag rate beta [1/s] at the middle of a step of `dt` seconds that starts with `slip` = v - u [m/s] under the
 /// acceleration `g` [m/s2] by all other forces. `rate(speed)` is beta at a slip of `speed` [m/s], not decreasing.
 ///
-/// The root of F(x) = ln rate(slip at the middle for beta = e^x) - x by the secant rule. Where the step is long, the slip
-/// at its middle is g/beta, so for beta ~ slip^p the slope of F is -(1 + p), between -1 (Stokes) and -2 (Newton) for any
-/// step. The first change, and all from the twentieth on (a law with jumps), take the slope -2, with which the error is
-/// at least halved.
+/// The root of F(x) = ln rate(slip at the middle for beta = e^x) - x by the secant rule. Where the step is long, the
+/// slip at its middle is g/beta, so for beta ~ slip^p the slope of F is -(1 + p), between -1 (Stokes) and -2 (Newton)
+/// for any step. The first change, and all from the twentieth on (a law with jumps), take the slope -2, with which the
+/// error is at least halved.
 template <class ExchangeLaw, class Rate>
 double mid_step_rate(const ExchangeLaw& exchange, const Rate& rate, const Vec3& slip, const Vec3& g, double dt) {
-    const double tolerance = 1e-13; // relative; a few rounding errors
+    const double tolerance = 1e-13;                              // relative; a few rounding errors
     double beta = rate(slip.norm()), before = 0.0, change = 0.0; // F and the change of x in the last pass
     for (int k = 0; k < ExchangeLaw::most_iterations; ++k) {
         const StepWeights half = exchange(0.5 * beta * dt);
