@@ -165,7 +165,7 @@ def figures(runs):
     right.axhline(0.5, color="k", lw=0.8)
     left.axhline(0.0, color="0.7", lw=0.6)
     left.set(title="plain, after 20 tau_p (lines: theory)", xlabel="kernel width of the coupling over h (-)", ylabel="error of the settling velocity (%)")
-    right.set(title="corrected, from 5 tau_p on (dotted: lattice, (2), times the wake)", xlabel="kernel width of the coupling over h (-)", ylabel="|error| (%)",
+    right.set(title="corrected, from 5 tau_p on (dotted: (2) times the wake)", xlabel="kernel width of the coupling over h (-)", ylabel="|error| (%)",
               yscale="log", ylim=(0.01, 30.0))
     for axes in (left, right):
         axes.legend(fontsize="small")
