@@ -80,7 +80,7 @@ void remark_on_idle_forces(const FluidOnGrains& fluid, const Domain& domain, std
         if (name == Buoyancy::name && domain.gravity.norm() == 0.0) remarks.push_back({name, "there is no gravity"});
         if (name == PressureGradient::name && !accelerates(fluid) && !fluid.gathers)
             remarks.push_back({name, "the prescribed flow does not accelerate: Du/Dt = 0"});
-        if ((name == SaffmanMei::name || name == LiAhmadi::name) && !has_gradient(fluid))
+        if ((name == SaffmanMei::name || name == LiAhmadi::name) && !has_gradient(fluid) && !fluid.gathers)
             remarks.push_back({name, "the prescribed flow has no gradient"});
     }
     if (law_name(fluid.drag) == "none") remarks.push_back({"exchange", "there is no drag to exchange"});
