@@ -69,7 +69,8 @@ void remember_own(Coupling& c, const FluidOnGrains& f, const GrainSystem& system
         Push& push = pushes[id];
         push.force = force[id];
         push.slip = at.u[id] + (0.5 * dt) * at.a[id] - 0.5 * (c.velocity[id] + g.v[k]);
-        if (c.self->fraction > 0.0)
+        // Grains that settle hand on their weight whatever the fluid does; only held ones resist a wake.
+        if (c.self->fraction > 0.0 && g.mobility[k] == 0.0)
             push.screening =
                 c.self->fraction / (c.places.volume[id] * f.density) *
                 drag_resistance(f.drag, f.density, f.viscosity, 2.0 * g.radius[k], at.eps[id], push.slip.norm());
