@@ -3,8 +3,8 @@
 //
 // Linear theory, in waves of number k and cosine c to the slip w, with the filters s^ (spreading) and g^ (gathering),
 // the symbol lambda(k) of the scheme's own viscous term, the structure factor S(k) of the other grains, and their drag
-// beta per volume and velocity where they are held (grains that settle hand on their weight whatever the fluid does, and
-// screen nothing):
+// beta per volume and velocity where they are held (grains that settle hand on their weight whatever the fluid does,
+// and screen nothing):
 //     dA/dt = F - [lambda + beta/rho + i k c w] A,
 //     u_self = (1/rho) (2 pi)^-3 Int s^ g^ S (I - kk/k^2) . Re A d3k.
 // Each wave fades exponentially, so the past needs no store. Out of the same sums come the grain's other marks:

@@ -263,6 +263,8 @@ def drift_figure(runs):
         axes.axhline(0.0, color="0.7", lw=0.6)
         if axes.get_legend_handles_labels()[0]:
             axes.legend(fontsize="x-small")
+        else:
+            axes.remove()  # these runs belong to the full tier
     return figure
 
 
