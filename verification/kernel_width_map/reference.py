@@ -11,9 +11,8 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
-from drag_laws.drag_laws import di_felice  # noqa: E402
 from theory import self_disturbance, self_disturbance_history, settling, sph_operators  # noqa: E402
-from theory.released_sphere import Sphere, speed_without_history  # noqa: E402
+from theory.lone_grain import OwnVolume, backflow, by_law, law_of, terminal_speed  # noqa: E402
 
 UNITS = {"off_theory": "1", "off_law": "1"}
 SHARE, FLOOR, EARLIEST = 0.10, 0.005, 5.0  # of the wake, of u_t; in tau_p
@@ -54,39 +53,13 @@ def setting(scene):
                    scene["coupling"]["kernel_width"]["times_smoothing"], fluid["sound_speed"], tuple(scene["domain"]["size"]), scene["time"]["end"])
 
 
-def law_of(eps):
-    return lambda re: eps * di_felice(eps, np.maximum(eps * np.asarray(re, float), 1e-12))
-
-
-class OwnVolume(Sphere):
-    """A grain that meets the backflow b of its own volume, in a balanced box: equation (3) of `single_grain`."""
-
-    b, share_of_box = 0.0, 0.0
-
-    def inertia(self, added_mass):
-        return super().inertia(added_mass) / (1.0 + self.b)
-
-    def weight(self):
-        return super().weight() * (1.0 - self.share_of_box)
-
-
-def backflow(modes, s):
-    smoothed = sph_operators.transform(s.kernel, 3, modes.k * s.h)
-    rate = s.c**2 * (modes.k * smoothed) ** 2 / self_disturbance.decay_rate(s.scheme, self_disturbance.Fluid(s.rho, s.mu), modes.k)
-    return s.volume * float((modes.share * modes.cosine**2) @ np.where(np.abs(smoothed) > 1e-6, -np.expm1(-rate * s.end) / smoothed, 0.0))
-
-
-def terminal_speed(s):
-    return Sphere(law_of(1.0), s.rho_p, s.d, s.rho, s.mu).terminal_speed()
-
-
 @lru_cache(maxsize=None)
 def settled(s, times):
     """(v, u_self), m/s, downwards, of the uncorrected scheme."""
     modes = self_disturbance.box_modes(s.scheme, s.box, reach=14.0)
     eps = 1.0 - self_disturbance.own_volume_fraction(s.scheme, s.d)
     grain = OwnVolume(law_of(eps), s.rho_p, s.d, s.rho, s.mu)
-    grain.b, grain.share_of_box = backflow(modes, s), s.volume / math.prod(s.box)
+    grain.b, grain.share_of_box = backflow(s.scheme, modes, s), s.volume / math.prod(s.box)
     found = self_disturbance_history.plain_settling(grain, s.scheme, modes, np.array(times), "slip", stress=True)
     return found.v / (1.0 + grain.b), found.u_self
 
@@ -104,7 +77,7 @@ def fall(run):
 def off_law(run):
     """Greatest distance from the drag law over u_t, from 5 tau_p on."""
     s, (t, v) = setting(run.scene), fall(run)
-    law = speed_without_history(Sphere(law_of(1.0), s.rho_p, s.d, s.rho, s.mu), t, False)
+    law = by_law(s, t)
     return float(np.max(np.abs(v - law)[t > EARLIEST * s.tau * (1.0 - 1e-9)])) / terminal_speed(s)
 
 

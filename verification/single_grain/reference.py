@@ -11,9 +11,8 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
-from drag_laws.drag_laws import di_felice  # noqa: E402
-from theory import self_disturbance, self_disturbance_history, settling, sph_operators  # noqa: E402
-from theory.released_sphere import Sphere, speed_without_history  # noqa: E402
+from theory import self_disturbance, self_disturbance_history, settling  # noqa: E402
+from theory.lone_grain import OwnVolume, backflow, by_law, law_of, terminal_speed  # noqa: E402
 
 UNITS = {"off_theory": "1", "off_plain_law": "1", "off_law": "1"}
 SHARE, FLOOR = 0.10, 0.005  # of the disturbance, of u_t: the larger of both is the bound
@@ -53,44 +52,6 @@ def setting(scene):
                    scene["coupling"].get("self_disturbance", "none") != "none",
                    fluid["density"], fluid["viscosity"], grain["density"], grain["diameter"], fluid["kernel"],
                    fluid["smoothing"] * fluid["spacing"], fluid["sound_speed"], tuple(scene["domain"]["size"]), scene["time"]["end"])
-
-
-def law_of(eps):
-    """Di Felice's factor on the interstitial slip at porosity eps, as a function of the interstitial Re."""
-    return lambda re: eps * di_felice(eps, np.maximum(eps * np.asarray(re, float), 1e-12))
-
-
-def terminal_speed(s):
-    """u_t of Di Felice's law for a lone grain, porosity 1, m/s."""
-    return Sphere(law_of(1.0), s.rho_p, s.d, s.rho, s.mu).terminal_speed()
-
-
-def backflow(scheme, modes, s):
-    """Share b of the grain's speed with which the fluid about it flows the other way, README (3)."""
-    smoothed = sph_operators.transform(s.kernel, 3, modes.k * s.h)
-    rate = s.c**2 * (modes.k * smoothed) ** 2 / self_disturbance.decay_rate(scheme, self_disturbance.Fluid(s.rho, s.mu), modes.k)
-    settled = -np.expm1(-rate * s.end) / smoothed
-    return s.volume * float((modes.share * modes.cosine**2) @ settled)
-
-
-class OwnVolume(Sphere):
-    """A grain that meets the backflow: in v' = (1 + b) v, drag = drag(v' - u_self) and m/(1 + b) dv'/dt is its inertia. With the
-    balanced box, its weight is less by its share of the box."""
-
-    b, share_of_box = 0.0, 0.0
-
-    def inertia(self, added_mass):
-        return super().inertia(added_mass) / (1.0 + self.b)
-
-    def weight(self):
-        return super().weight() * (1.0 - self.share_of_box)
-
-
-def by_law(s, t):
-    """v [nt], m/s, downwards, at times t of a lone grain under the drag law, by which the corrected scheme is meant to go."""
-    t = np.asarray(t, float)
-    first = 0 if t[0] > 0.0 else 1
-    return np.concatenate([np.zeros(first), speed_without_history(Sphere(law_of(1.0), s.rho_p, s.d, s.rho, s.mu), t[first:], False)])
 
 
 @lru_cache(maxsize=None)

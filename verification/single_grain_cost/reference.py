@@ -10,8 +10,8 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
-from drag_laws.drag_laws import di_felice  # noqa: E402
 from theory import settling  # noqa: E402
+from theory.lone_grain import law_of  # noqa: E402
 from theory.released_sphere import Sphere, speed_without_history  # noqa: E402
 
 UNITS = {"off_law": "1"}
@@ -27,8 +27,7 @@ LABELS = {"as_code": "as_code", "as_code_quiet": "as_code, masses at rest", "as_
 def lone(scene):
     """The grain under Di Felice's law at porosity 1, and its tau_p, s."""
     fluid, grain = scene["fluid"], scene["grains"]
-    sphere = Sphere(lambda re: di_felice(1.0, np.maximum(np.asarray(re, float), 1e-12)), grain["density"], grain["diameter"],
-                    fluid["density"], fluid["viscosity"])
+    sphere = Sphere(law_of(1.0), grain["density"], grain["diameter"], fluid["density"], fluid["viscosity"])
     return sphere, settling.relaxation_time(grain["density"], grain["diameter"], fluid["viscosity"])
 
 

@@ -11,9 +11,8 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
-from drag_laws.drag_laws import di_felice  # noqa: E402
 from theory import self_disturbance, self_disturbance_history, settling, sph_operators  # noqa: E402
-from theory.released_sphere import Sphere  # noqa: E402
+from theory.lone_grain import OwnVolume, backflow, law_of, terminal_speed  # noqa: E402
 
 UNITS = {"off_theory": "1", "distance": "1", "buoyancy": "1"}
 SHARE, FLOOR = 0.10, 0.005  # of the disturbance, of u_t: the larger of both is the bound
@@ -56,36 +55,10 @@ def setting(run):
                    run.scene["time"]["end"])
 
 
-def law_of(eps):
-    """Di Felice's factor on the interstitial slip at porosity eps, as a function of the interstitial Re."""
-    return lambda re: eps * di_felice(eps, np.maximum(eps * np.asarray(re, float), 1e-12))
-
-
-def terminal_speed(s):
-    """u_t of Di Felice's law for a lone grain, porosity 1, m/s."""
-    return Sphere(law_of(1.0), s.rho_p, s.d, s.rho, s.mu).terminal_speed()
-
-
-class OwnVolume(Sphere):
-    """A grain that meets the backflow b v of its own porosity (`single_grain`, equation 3)."""
-
-    b = 0.0
-
-    def inertia(self, added_mass):
-        return super().inertia(added_mass) / (1.0 + self.b)
-
-
 def grain_of(s):
     """The grain at the porosity that it makes itself."""
     scheme = self_disturbance.one_kernel(s.kernel, s.h)
     return OwnVolume(law_of(1.0 - self_disturbance.own_volume_fraction(scheme, s.d)), s.rho_p, s.d, s.rho, s.mu)
-
-
-def backflow(scheme, modes, s):
-    """Share b of the grain's speed with which the fluid about it flows the other way."""
-    smoothed = sph_operators.transform(s.kernel, 3, modes.k * s.h)
-    rate = s.c**2 * (modes.k * smoothed) ** 2 / self_disturbance.decay_rate(scheme, self_disturbance.Fluid(s.rho, s.mu), modes.k)
-    return s.volume * float((modes.share * modes.cosine**2) @ (-np.expm1(-rate * s.end) / smoothed))
 
 
 def waves(scheme, s):
