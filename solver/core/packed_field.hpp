@@ -8,14 +8,20 @@
 
 namespace plumb {
 
-[[gnu::always_inline]] inline Pack load(const Field<double>& field, std::size_t group) {
+/// The eight numbers from an address on, aligned or not.
+[[gnu::always_inline]] inline Pack load(const double* at) {
     Pack value;
-    std::memcpy(&value, &field[pack_width * group], sizeof value);
+    std::memcpy(&value, at, sizeof value);
     return value;
+}
+[[gnu::always_inline]] inline void store(double* at, Pack value) { std::memcpy(at, &value, sizeof value); }
+
+[[gnu::always_inline]] inline Pack load(const Field<double>& field, std::size_t group) {
+    return load(&field[pack_width * group]);
 }
 
 [[gnu::always_inline]] inline void store(Field<double>& field, std::size_t group, Pack value) {
-    std::memcpy(&field[pack_width * group], &value, sizeof value);
+    store(&field[pack_width * group], value);
 }
 
 [[gnu::always_inline]] inline void add(Field<double>& field, std::size_t group, Pack change) {

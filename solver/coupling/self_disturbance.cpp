@@ -1,11 +1,11 @@
 #include "coupling/self_disturbance.hpp"
 
+#include "core/packed_field.hpp"
 #include "core/parallel.hpp"
 #include "sph/symbols.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 namespace plumb {
@@ -35,6 +35,8 @@ Cosines cosines() {
     return rule;
 }
 
+const Cosines rule = cosines();
+
 double total(const Pack& p) {
     double sum = 0.0;
     for (int lane = 0; lane < pack_width; ++lane) sum += p[lane];
@@ -57,13 +59,6 @@ template <class Value> Memory<Value> memory_at(Value* start) {
     return {start, start + waves_size, start + waves_size + backflow_size, start + waves_size + backflow_size + 3};
 }
 
-Pack load(const double* at) {
-    Pack p;
-    std::memcpy(&p, at, sizeof(Pack));
-    return p;
-}
-void store(double* at, const Pack& p) { std::memcpy(at, &p, sizeof(Pack)); }
-
 /// Complex numbers, eight at once.
 struct Complex {
     Pack re, im;
@@ -78,15 +73,23 @@ Complex turn(const Pack& q) {
     return {(one - square) * inverse, broadcast<Pack>(-2.0) * q * inverse};
 }
 
+/// What is kept of a wave that fades at a rate [1/s], and what a constant push leaves in it [s], over a step.
+struct Fading {
+    double kept, received;
+};
+Fading fading(double rate, double dt) {
+    return {std::exp(-rate * dt), rate > 0.0 ? -std::expm1(-rate * dt) / rate : dt};
+}
+
 /// One step of one wave number: A' = exp(-i k.w dt - r dt) A + exp(-i k.w dt/2) F Int exp(-r t) dt.
-void carry(const Memory<double>& m, std::size_t n, const Vec3& force, const Pack& phase, double kept, double received) {
+void carry(const Memory<double>& m, std::size_t n, const Vec3& force, const Pack& phase, const Fading& step) {
     const Complex half = turn(broadcast<Pack>(0.25) * phase), whole = half * half;
     for (std::size_t c = 0; c < 3; ++c) {
-        const Pack push = broadcast<Pack>(received * force[static_cast<Eigen::Index>(c)]);
+        const Pack push = broadcast<Pack>(step.received * force[static_cast<Eigen::Index>(c)]);
         const Complex old{load(m.wave(n, c)), load(m.wave(n, 3 + c))};
         const Complex past = whole * old;
-        store(m.wave(n, c), broadcast<Pack>(kept) * past.re + push * half.re);
-        store(m.wave(n, 3 + c), broadcast<Pack>(kept) * past.im + push * half.im);
+        store(m.wave(n, c), broadcast<Pack>(step.kept) * past.re + push * half.re);
+        store(m.wave(n, 3 + c), broadcast<Pack>(step.kept) * past.im + push * half.im);
     }
 }
 
@@ -136,7 +139,6 @@ std::size_t wake_size() { return memory_size; }
 
 OwnFluid own_fluid(const SelfDisturbance& self, std::size_t id, double volume) {
     const auto m = memory_at(self.memory.data() + id * memory_size);
-    const Cosines rule = cosines();
     const Pack weighted = rule.weight * rule.c * rule.c;
     const Vec3 slip(m.slip[0], m.slip[1], m.slip[2]);
     const double speed = slip.norm();
@@ -174,7 +176,12 @@ void take_out(const SelfDisturbance& self, const std::vector<double>& mass, cons
 }
 
 void remember(SelfDisturbance& self, const std::vector<Push>& pushes, double dt) {
-    const Cosines rule = cosines();
+    std::array<Fading, wave_numbers> unscreened{}; // the same for all grains that settle
+    std::array<double, wave_numbers> taken{};
+    for (std::size_t n = 0; n < wave_numbers; ++n) {
+        unscreened[n] = fading(self.decay[n], dt);
+        taken[n] = -std::expm1(-self.settles[n] * dt);
+    }
     parallel_for(pushes.size(), [&](std::size_t id) {
         const auto m = memory_at(self.memory.data() + id * memory_size);
         const Push& push = pushes[id];
@@ -185,13 +192,12 @@ void remember(SelfDisturbance& self, const std::vector<Push>& pushes, double dt)
             if (self.law.steady)
                 settle(m, n, push.force, frequency, rate);
             else
-                carry(m, n, push.force, frequency * broadcast<Pack>(dt), std::exp(-rate * dt),
-                      rate > 0.0 ? -std::expm1(-rate * dt) / rate : dt);
-            const double taken = -std::expm1(-self.settles[n] * dt);
+                carry(m, n, push.force, frequency * broadcast<Pack>(dt),
+                      push.screening == 0.0 ? unscreened[n] : fading(rate, dt));
             for (std::size_t c = 0; c < 3; ++c) {
                 const double target = -push.slip[static_cast<Eigen::Index>(c)];
                 double& back = m.backflow[3 * n + c];
-                back += taken * (target - back);
+                back += taken[n] * (target - back);
             }
         }
         for (std::size_t c = 0; c < 3; ++c) {

@@ -21,7 +21,7 @@ template <class Law> std::int64_t set_excess(const SphFluid& f, const Law& law, 
 }
 
 template <class KernelLaw> void add_friction(SphFluid& f, const Weights& w, const Field<double>& excess) {
-    const double inverse_h_sq = 1.0 / (f.h * f.h);
+    const Pack inverse_h = broadcast<Pack>(1.0 / f.h);
     const double factor = KernelLaw::sigma(3) / std::pow(f.h, 5) * f.viscosity / f.mass;
     for_each_group(f.clusters.count, [&](std::size_t cluster) {
         Pack own[8];
@@ -33,8 +33,7 @@ template <class KernelLaw> void add_friction(SphFluid& f, const Weights& w, cons
             const FluidRecord& b = f.clusters.records[r];
             const std::int32_t slot = w.slot_of_record[r];
             const Pack theirs = slot < 0 ? ours : broadcast<Pack>(excess[static_cast<std::size_t>(slot)]);
-            const Pack dx = own[0] - b.x, dy = own[1] - b.y, dz = own[2] - b.z;
-            const Pack q = square_root((dx * dx + dy * dy + dz * dz) * broadcast<Pack>(inverse_h_sq));
+            const Pack q = apart(own[0], own[1], own[2], b).r * inverse_h;
             const Pack weight = KernelLaw::f(q) * broadcast<Pack>(b.volume) * (ours + theirs);
             sum[0] += weight * (own[4] - b.u);
             sum[1] += weight * (own[5] - b.v);

@@ -29,9 +29,10 @@ void find_porosity(Coupling& c, SphFluid& fluid, bool new_lists) {
     c.clamped += set_porosity(fluid, c.weights);
 }
 
-/// What every grain has received per second over the step, by id, without what it received from the outside: buoyancy
-/// in a hydrostatic pressure that the scene leaves out, and a mean gradient [N].
-std::vector<Vec3> received_from_fluid(const FluidOnGrains& f, const GrainSystem& system, double dt) {
+/// What the fluid has received from every grain per second over the step, by id: the reaction of what the grain
+/// received, without what came from the outside, buoyancy in a hydrostatic pressure that the scene leaves out and a
+/// mean gradient [N].
+std::vector<Vec3> force_on_fluid(const FluidOnGrains& f, const GrainSystem& system, double dt) {
     const Grains& g = system.grains;
     std::vector<Vec3> force(g.size());
     parallel_for(g.size(), [&](std::size_t k) {
@@ -42,8 +43,8 @@ std::vector<Vec3> received_from_fluid(const FluidOnGrains& f, const GrainSystem&
             force[id].setZero();
             return;
         }
-        force[id] = (alone ? Vec3(f.forcing.impulse[k] / dt) : f.last_fluid_force[id]) -
-                    force_from_outside(f, 2.0 * g.radius[k], system.domain.gravity);
+        force[id] = force_from_outside(f, 2.0 * g.radius[k], system.domain.gravity) -
+                    (alone ? Vec3(f.forcing.impulse[k] / dt) : f.last_fluid_force[id]);
     });
     return force;
 }
@@ -53,8 +54,9 @@ void take_out_own(Coupling& c, const GrainSystem& system, GatheredFluid& at_grai
     if (!c.self) return;
     take_out(*c.self, c.mass, c.places.volume, at_grains);
     c.velocity.resize(system.grains.size());
-    for (std::size_t k = 0; k < system.grains.size(); ++k)
+    parallel_for(system.grains.size(), [&](std::size_t k) {
         c.velocity[static_cast<std::size_t>(system.grains.id[k])] = system.grains.v[k];
+    });
 }
 
 /// After it: the push of every grain, with its slip at the middle of the step, goes into its wake.
@@ -109,8 +111,7 @@ void advance_coupled(Coupling& c, SphFluid& fluid, FluidOnGrains& at_grains, Gra
     complete_fluid_forces(at_grains, grains, dt);
 
     if (c.two_way) {
-        std::vector<Vec3> force = received_from_fluid(at_grains, grains, dt);
-        for (Vec3& f : force) f = -f;
+        const std::vector<Vec3> force = force_on_fluid(at_grains, grains, dt);
         spread(fluid, c.weights, force);
         remember_own(c, at_grains, grains, force, dt);
     }
