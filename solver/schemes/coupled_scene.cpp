@@ -36,10 +36,9 @@ double read_width(Table& coupling, const std::string& key, const SphFluid& fluid
                                           : relative.number("times_smoothing", positive) * fluid.h;
 }
 
-/// The correction, if the scene names one.
+/// The correction, or `none`.
 void read_self_disturbance(Table& coupling, Coupling& c, const SphFluid& fluid, const GrainSystem& grains) {
     const char* const key = "self_disturbance";
-    if (!coupling.has(key)) return;
     const auto law = make_family<SelfDisturbanceLaw>(coupling.law(key));
     const auto* theory = std::get_if<OseenBrinkman>(&law);
     if (theory == nullptr) return;
@@ -57,10 +56,9 @@ void read_self_disturbance(Table& coupling, Coupling& c, const SphFluid& fluid, 
     c.self->memory.assign(r.size() * wake_size(), 0.0);
 }
 
-/// The closure for the fluid's viscosity among the grains, if the scene names one.
+/// The closure for the fluid's viscosity among the grains, or `none`.
 void read_suspension_viscosity(Table& coupling, Coupling& c, const SphFluid& fluid) {
     const char* const key = "suspension_viscosity";
-    if (!coupling.has(key)) return;
     c.viscosity = make_family<SuspensionViscosity>(coupling.law(key));
     if (!std::holds_alternative<PureFluidViscosity>(c.viscosity) && !std::holds_alternative<Morris>(fluid.viscous_term))
         coupling.fail(key, "needs fluid.viscous_term = \"morris\"");
@@ -100,9 +98,8 @@ Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem
     Coupling c;
     c.two_way = coupling.choice("direction", {"two_way", "one_way"}) == "two_way";
     c.weights.kernel = make_family<Kernel>(coupling.law("kernel"));
-    if (coupling.has("porosity")) c.weights.porosity = make_family<PorosityLaw>(coupling.law("porosity"));
-    if (coupling.has("own_volume"))
-        c.weights.own_volume = coupling.choice("own_volume", {"included", "excluded"}) == "included";
+    c.weights.porosity = make_family<PorosityLaw>(coupling.law("porosity"));
+    c.weights.own_volume = coupling.choice("own_volume", {"included", "excluded"}) == "included";
     if (by_diameter(c.weights.porosity)) check_number_of_sizes(coupling, grains);
     c.weights.largest_diameter = largest_diameter(grains);
     const double d = c.weights.largest_diameter, spread = read_width(coupling, "kernel_width", fluid, d);

@@ -224,6 +224,10 @@ fluid_mass = "pure"
 drag = "di_felice"
 forces = ["pressure_gradient"]
 exchange = "explicit"
+porosity = "kernel"
+own_volume = "included"
+self_disturbance = "none"
+suspension_viscosity = "none"
 [[wall]]
 name = "floor"
 shape = "plane"

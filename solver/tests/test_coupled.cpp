@@ -194,7 +194,9 @@ TEST(Coupled, BadScenesAreInputErrors) {
             {"coupling.own_volume", "self_disturbance"});
     refused({{"coupling.direction", "\"both\""}}, {"coupling.direction", "two_way", "one_way"});
     refused({{"coupling.direction", ""}}, {"coupling.direction: missing"});
-    refused({{"coupling.fluid_mass", ""}}, {"coupling.fluid_mass: missing"});
+    for (const std::string key :
+         {"fluid_mass", "porosity", "own_volume", "self_disturbance", "suspension_viscosity"}) // no hidden default
+        refused({{"coupling." + key, ""}}, {("coupling." + key + ": missing").c_str()});
     refused({{"coupling.drag", "\"darcy\""}}, {"coupling.drag", "darcy", "di_felice"});
     refused({{"coupling.forces", "[\"buoyancy\"]"}}, {"coupling.mean_pressure_gradient", "pressure_gradient"});
     refused({{"coupling.direction", "\"one_way\""}}, {"coupling.mean_pressure_gradient", "one_way", "vector"});
