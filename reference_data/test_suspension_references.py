@@ -154,6 +154,20 @@ def test_forces_on_the_block_are_its_weight_and_the_fluid_gets_them_back():
         smoothed_block.coupling(block, h, "wide")
 
 
+def test_widths_of_each_place_change_a_block_where_it_is_dense_only():
+    """As in the public code, h eps^(-1/3) with the eps of each place; forces still reach the fluid whole."""
+    block, h = smoothed_block.scene.lattice(0.6), 4 * D
+    parts = smoothed_block.coupling(block, h, own_widths=True)
+    step = smoothed_block.STEP * h
+    assert parts.spread.sum(axis=0) * step == pytest.approx(1.0, rel=2e-3)
+    middle = np.argmin(parts.eps)  # there the width is that of the block's own porosity, as with the nominal one
+    assert parts.eps[middle] == pytest.approx(smoothed_block.coupling(block, h).eps.min(), abs=2e-3)
+    ratios = [smoothed_block.velocity(WATER, smoothed_block.scene.lattice(eps), 6 * D, own_widths=True)
+              / smoothed_block.velocity(WATER, smoothed_block.scene.lattice(eps), 6 * D) for eps in (0.95, 0.8, 0.6)]
+    assert 0.95 < ratios[2] < ratios[1] < ratios[0] < 1.0  # the fuzzy edge is narrower: less clear fluid reaches in
+    assert ratios[1] > 0.995
+
+
 def test_block_against_the_nominal_velocity():
     """A separate calculation: 29 % too fast at h/d = 6, 8 % at 2, 90 % and more at nominal 0.6 (glycerol-water, to its digits)."""
     rows = table("suspension_theory/smoothed_block.csv")

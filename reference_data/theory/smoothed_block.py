@@ -56,8 +56,13 @@ def gather_width(kind, h, h_c, eps):
     return widths[kind]
 
 
-def coupling(block, h, gather="h"):
-    """Coupling of the layers of a `scene.Lattice` with unbounded fluid; h in m."""
+def coupling(block, h, gather="h", own_widths=False):
+    """Coupling of the layers of a `scene.Lattice` with unbounded fluid; h in m.
+
+    The spreading kernel has the width h eps^(-1/3) of the nominal porosity, or with own_widths that of the porosity at each
+    place, as in the public code: eps is then the fixed point of its own spreading, and a grain's force is spread over its sum
+    of weights.
+    """
     h_c = scene.coupling_width(h, block.nominal)
     reach = 2.0 * h_c + 2.0 * h * block.eps ** (-1.0 / 3.0) + 2.0 * h
     count = math.ceil((block.top - block.bottom + 2.0 * reach) / (STEP * h))
@@ -66,8 +71,20 @@ def coupling(block, h, gather="h"):
     eps = 1.0 - (1.0 - block.eps) * block.spacing * spread.sum(axis=1)
     if eps.min() <= 0.0:
         raise ValueError("the smoothed porosity vanishes: a layer is thinner than its kernel can resolve")
+    if own_widths:
+        eps, spread = own_width_spreading(block, h, z, eps)
     weight = plane_average(block.heights[:, None] - z, gather_width(gather, h, h_c, eps))
     return Coupling(eps, weight / weight.sum(axis=1, keepdims=True), spread)
+
+
+def own_width_spreading(block, h, z, eps):
+    """(eps [m], spread [m, n], 1/m) with the width h eps^(-1/3) of each place; `eps` [m] to begin with."""
+    for _ in range(200):
+        spread = plane_average(z[:, None] - block.heights, (h * eps ** (-1.0 / 3.0))[:, None])
+        before, eps = eps, 1.0 - (1.0 - block.eps) * block.spacing * spread.sum(axis=1)
+        if np.max(np.abs(eps - before)) < 1e-13:
+            return eps, spread / (spread.sum(axis=0) * (z[1] - z[0]))
+    raise ValueError("the porosity and its widths do not settle: the block is too dense for this kernel")
 
 
 def porosities(block, h, gather="h"):
@@ -96,9 +113,9 @@ def forces(speed, block, parts, fluid, exchange, law=di_felice):
     return np.linalg.solve(np.eye(block.layers) - own, drag)  # f + V g with g = K (f + V g), own = V K
 
 
-def velocity(fluid, block, h, gather="h", exchange="gathered", law=di_felice):
+def velocity(fluid, block, h, gather="h", exchange="gathered", law=di_felice, own_widths=False):
     """Steady velocity of the rigid block, m/s, from equation (2)."""
-    parts = coupling(block, h, gather)
+    parts = coupling(block, h, gather, own_widths)
     weight = (GRAIN["rho_p"] - fluid["rho"]) * scene.GRAIN_VOLUME * GRAVITY
 
     def excess(logarithm):
