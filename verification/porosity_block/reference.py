@@ -30,7 +30,7 @@ class Setting:
         self.block = sedimentation_scene.Lattice(math.nan, round(sedimentation_scene.WIDTH / spacing), layers, spacing, low)
         widths = [cp[key]["times_smoothing"] * self.h if isinstance(cp[key], dict) else cp[key]
                   for key in ("kernel_width", "gather_width", "porosity_width")]
-        self.widths = sinking_block.Widths(self.h, *widths)
+        self.widths = sinking_block.Widths(self.h, *widths, cp["porosity"], cp["own_volume"] == "included")
         artificial = fluid["artificial_viscosity"] * self.c * self.h / 20.0  # alpha c h/(4 (d + 2)), approaching pairs only
         reached = self.c**2 * self.end / (fluid["viscosity"] / fluid["density"] + artificial)
         self.answered = sinking_block.Answer(reached, fluid["spacing"])
