@@ -13,8 +13,8 @@ viscosity of that wave (artificial included),
     du^/dt = (c^2/nu) W^ {q^ - W^ u^},      q' = -w (ln eps)',                                                              (2)
 
 linear in w and solved by a matrix exponential. Only waves with W^ << 1 are slow, on which the gathering kernel has little weight:
-c^2 t/nu enters the block's velocity in the fourth digit. Waves shorter than two spacings the fluid's lattice does not hold: nothing
-answers them. (1) holds while the lattice of the fluid is not yet drawn apart.
+c^2 t/nu enters the block's velocity in the fourth digit. Waves of two spacings have no divergence on the fluid's lattice, and shorter ones it
+does not hold: nothing answers them. (1) holds while the lattice of the fluid is not yet drawn apart.
 
 Widths of spreading, gathering and porosity are independent, and eps has a filter of its own, POROSITY: the kernel (W^), its mean over a
 grain's sphere (times 3 (sin x - x cos x)/x^3, x = k d/2), or 2 W - W*W (W^ (2 - W^)). A layer is a plane, so its mean over planes has the
@@ -119,7 +119,7 @@ def response(eps, box, h, answered):
     steepness = np.fft.irfft(slope * np.fft.rfft(np.log(eps)), count)
     integral = _by_waves(primitive, count)
     integral = (integral - integral[0]) * steepness  # q = -integral w, zero in the clear
-    drive = _by_waves(np.where(k < math.pi / answered.spacing, answered.reached * smoothed, 0.0), count)
+    drive = _by_waves(np.where(k < (1.0 - 1e-9) * math.pi / answered.spacing, answered.reached * smoothed, 0.0), count)
     rates = np.zeros((count + 1, count + 1))
     rates[:count, :count] = -drive @ (_by_waves(smoothed, count) + integral)
     rates[:count, count] = -drive @ integral.sum(axis=1)

@@ -31,13 +31,16 @@ class Setting:
         widths = [cp[key]["times_smoothing"] * self.h if isinstance(cp[key], dict) else cp[key]
                   for key in ("kernel_width", "gather_width", "porosity_width")]
         self.widths = sinking_block.Widths(self.h, *widths, cp["porosity"], cp["own_volume"] == "included")
-        artificial = fluid["artificial_viscosity"] * self.c * self.h / 20.0  # alpha c h/(4 (d + 2)), approaching pairs only
+        self.surface = fluid["fill"]["upper"][2] if fluid.get("free_surface") else None
+        artificial = fluid.get("artificial_viscosity", 0.0) * self.c * self.h / 20.0  # alpha c h/(4 (d + 2)), approaching pairs only
         reached = self.c**2 * self.end / (fluid["viscosity"] / fluid["density"] + artificial)
         self.answered = sinking_block.Answer(reached, fluid["spacing"])
 
     @property
     def period(self):
-        """Of the longest wave of sound, s."""
+        """Of the longest wave of sound, s; under a free surface a quarter of it stands in the fluid."""
+        if self.surface is not None:
+            return 4.0 * self.surface / self.c
         return (2.0 if self.closed else 1.0) * self.box / self.c
 
 
@@ -45,7 +48,7 @@ class Setting:
 def _theory(key):
     fluid, block, widths, box, answered, closed = key
     fluid = dict(fluid)
-    depth = box + 4.0 * max(widths) if closed else box  # a box with walls has no images: theirs are kept out of reach
+    depth = box + 4.0 * max(widths[:4]) if closed else box  # a box with walls has no images: theirs are kept out of reach
     at = sinking_block.field(block, depth, widths, answered)
     v = sinking_block.velocity(fluid, block, widths, at)
     return v, 1.0 if closed else sinking_block.share_in_box(at, smoothed_block.GRAIN["rho_p"] / fluid["rho"])
