@@ -10,6 +10,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from theory import sedimentation_scene as scene  # noqa: E402
 from theory import settling, sinking_block, smoothed_block, sph_operators  # noqa: E402
+from theory.plane_kernel import plane_average  # noqa: E402
 
 WATER, D, BOX = settling.FLUIDS["water"], settling.GRAIN["d"], 6.0e-3
 
@@ -65,3 +66,62 @@ def test_narrow_kernels_leave_the_velocity_of_the_lattice():
         widths = sinking_block.Widths(*[width] * 4)
         excess.append(sinking_block.velocity(WATER, block, widths, sinking_block.field(block, BOX, widths)) / plain - 1.0)
     assert 0.0 < excess[0] < excess[1] and excess[0] == pytest.approx(0.5 * excess[1], rel=0.15)
+
+
+@pytest.mark.parametrize("law", ["overlap", "deconvolved"])
+def test_filters_of_porosity_are_those_of_space(law):
+    """A plane's eps from its definition in space: W averaged over spheres whose centres fill the plane, and 2 W - W*W along z."""
+    width = 1.3 * D
+    z = np.linspace(-8.0 * D, 8.0 * D, 3201)
+    plane = plane_average(z, width)
+    if law == "overlap":
+        ball = np.maximum(0.25 * D**2 - z**2, 0.0) * 6.0 / D**3  # a slice of a sphere over its volume
+        expected = np.convolve(plane, ball, "same") * (z[1] - z[0])
+    else:
+        expected = 2.0 * plane - np.convolve(plane, plane, "same") * (z[1] - z[0])
+    block = scene.Lattice(0.9, 4, 1, 1.6e-3, 0.0)  # one layer, 1.6 mm of the box's 6
+    widths = sinking_block.Widths(width, width, width, width, law)
+    at = sinking_block.field(block, BOX, widths)
+    found = (1.0 - at.eps) / ((1.0 - block.eps) * block.spacing)
+    assert found == pytest.approx(np.interp(at.z - block.heights[0], z, expected, left=0.0, right=0.0), abs=2e-3 * expected.max())
+
+
+def test_all_filters_leave_the_middle_of_a_thick_block_alone_and_deconvolution_its_edge_sharper():
+    block, width = scene.lattice(0.8), 2.5 * D
+    fields = {law: sinking_block.field(block, BOX, sinking_block.Widths(*[width] * 4, law)) for law in sinking_block.POROSITY}
+    middle, edge = 0.5 * (block.bottom + block.top), block.top
+    for at in fields.values():
+        assert np.interp(middle, at.z, at.eps) == pytest.approx(block.eps, abs=1e-3)
+        assert np.interp(edge, at.z, at.eps) == pytest.approx(0.5 * (1.0 + block.eps), abs=5e-3)
+    slope = {law: np.gradient(at.eps, at.z).max() for law, at in fields.items()}
+    assert slope["overlap"] < slope["kernel"] and slope["deconvolved"] == pytest.approx(1.3 * slope["kernel"], rel=0.03)
+
+
+def test_own_volume_of_one_kernel():
+    """V Int W^2 dV, by quadrature in space: 0.0785 (d/h)^3 of wendland_c2."""
+    r = np.linspace(0.0, 2.0, 20001)
+    kernel = 21.0 / (16.0 * np.pi) * (1.0 - 0.5 * r) ** 4 * (1.0 + 2.0 * r)
+    expected = np.pi / 6.0 * np.sum(4.0 * np.pi * r**2 * kernel**2) * r[1] / 27.0
+    assert sinking_block.own_volume(sinking_block.Widths(*[3.0 * D] * 4)) == pytest.approx(expected, rel=1e-5)
+    wide = sinking_block.Widths(*[3.0 * D] * 4, "deconvolved")
+    assert sinking_block.own_volume(wide) > expected
+
+
+def test_a_grain_that_leaves_out_its_own_volume_falls_faster():
+    block, width = scene.lattice(0.8), 2.0 * D
+    v = []
+    for own in (True, False):
+        widths = sinking_block.Widths(*[width] * 4, "kernel", own)
+        v.append(sinking_block.velocity(WATER, block, widths, sinking_block.field(block, BOX, widths)))
+    assert v[1] > 1.01 * v[0]
+
+
+def test_a_wave_of_two_spacings_is_not_answered():
+    """Whatever the last bit of box over spacing."""
+    block, spacing = scene.lattice(0.6), 4.0 * D
+    widths = sinking_block.Widths(6.0 * D, 2.0 * D, 2.0 * D, 2.0 * D)
+    v = []
+    for slightly in (1.0 - 1e-12, 1.0, 1.0 + 1e-12):
+        at = sinking_block.field(block, 12.0 * spacing, widths, sinking_block.Answer(1e3, slightly * spacing))
+        v.append(sinking_block.velocity(WATER, block, widths, at))
+    assert v == pytest.approx([v[1]] * 3, rel=1e-9)

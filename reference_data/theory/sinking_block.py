@@ -13,11 +13,13 @@ viscosity of that wave (artificial included),
     du^/dt = (c^2/nu) W^ {q^ - W^ u^},      q' = -w (ln eps)',                                                              (2)
 
 linear in w and solved by a matrix exponential. Only waves with W^ << 1 are slow, on which the gathering kernel has little weight:
-c^2 t/nu enters the block's velocity in the fourth digit. Waves shorter than two spacings the fluid's lattice does not hold: nothing
-answers them. (1) holds while the lattice of the fluid is not yet drawn apart.
+c^2 t/nu enters the block's velocity in the fourth digit. Waves of two spacings have no divergence on the fluid's lattice, and shorter ones it
+does not hold: nothing answers them. (1) holds while the lattice of the fluid is not yet drawn apart.
 
-Widths of spreading, gathering and porosity are independent. As in smoothed_block.py a grain's slip is <eps> V <w>, and the force of
-all grains, spread and gathered again, is the gradient that each feels.
+Widths of spreading, gathering and porosity are independent, and eps has a filter of its own, POROSITY: the kernel (W^), its mean over a
+grain's sphere (times 3 (sin x - x cos x)/x^3, x = k d/2), or 2 W - W*W (W^ (2 - W^)). A layer is a plane, so its mean over planes has the
+filter's transform in space. As in smoothed_block.py a grain's slip is <eps> V <w>, and the force of all grains, spread and gathered again,
+is the gradient that each feels. Of the eps it gathers a grain may leave out what it has put there, V (2 pi)^-3 Int p^ g^ d3k (`own_volume`).
 
 Box. With no net momentum (the mean gradient balances the weight) the clear fluid moves with q,
     V_box = V - q = V (1 - Phi + M)/(1 - Phi + Phi rho_p/rho),   Phi = mean of 1 - eps,   M = mean of eps (w - 1),          (3)
@@ -41,13 +43,42 @@ from .settling import GRAIN, GRAVITY
 PER_WIDTH = 10  # points of z per h, and per narrower kernel
 
 
+def sphere_transform(x):
+    """Of a ball of radius R and integral one, x = k R > 0; below 0.01 its series, good to 1e-10."""
+    x = np.asarray(x, float)
+    far = np.maximum(x, 0.01)
+    return np.where(x < 0.01, 1.0 - 0.1 * x**2, 3.0 * (np.sin(far) - far * np.cos(far)) / far**3)
+
+
+# Filters of the porosity: transform from that of the kernel and the wave number, 1/m.
+POROSITY = {
+    "kernel": lambda kernel, k: kernel,
+    "overlap": lambda kernel, k: kernel * sphere_transform(0.5 * GRAIN["d"] * k),
+    "deconvolved": lambda kernel, k: kernel * (2.0 - kernel),
+}
+
+
 class Widths(NamedTuple):
-    """Smoothing lengths, m: of the fluid, of spreading, gathering and porosity."""
+    """Smoothing lengths, m: of the fluid, of spreading, gathering and porosity; which filter of POROSITY, own volume included or not."""
 
     fluid: float
     spread: float
     gather: float
     porosity: float
+    law: str = "kernel"
+    own_volume: bool = True
+
+
+def porosity_transform(widths, k):
+    """p^(k) of the filter of eps, k an array, 1/m."""
+    return POROSITY[widths.law](sph_operators.transform(KERNEL, 3, k * widths.porosity), k)
+
+
+def own_volume(widths):
+    """Share of eps that a grain gathers of its own volume, V (2 pi)^-3 Int p^ g^ d3k."""
+    k = np.linspace(0.0, 40.0 / min(widths.porosity, widths.gather), 4001)  # p^ g^ falls as k^-10: the rest is below 1e-8
+    both = porosity_transform(widths, k) * sph_operators.transform(KERNEL, 3, k * widths.gather)
+    return scene.GRAIN_VOLUME / (2.0 * math.pi**2) * float(np.sum(k**2 * both) * k[1])
 
 
 class Field(NamedTuple):
@@ -88,7 +119,7 @@ def response(eps, box, h, answered):
     steepness = np.fft.irfft(slope * np.fft.rfft(np.log(eps)), count)
     integral = _by_waves(primitive, count)
     integral = (integral - integral[0]) * steepness  # q = -integral w, zero in the clear
-    drive = _by_waves(np.where(k < math.pi / answered.spacing, answered.reached * smoothed, 0.0), count)
+    drive = _by_waves(np.where(k < (1.0 - 1e-9) * math.pi / answered.spacing, answered.reached * smoothed, 0.0), count)
     rates = np.zeros((count + 1, count + 1))
     rates[:count, :count] = -drive @ (_by_waves(smoothed, count) + integral)
     rates[:count, count] = -drive @ integral.sum(axis=1)
@@ -97,11 +128,12 @@ def response(eps, box, h, answered):
 
 def field(block, box, widths, answered=None):
     """Porosity and w around the block in a box of height `box`, m; answered = None: equation (1) with an exact divergence."""
-    narrowest = min(widths)
+    narrowest = min(widths[:4])
     count = 2 * math.ceil(0.5 * PER_WIDTH * box / narrowest)
     z = 0.5 * (block.bottom + block.top) + box * (np.arange(count) / count - 0.5)
-    layers = plane_average(heights_apart(z, block, box), widths.porosity).sum(axis=1)
-    eps = 1.0 - (1.0 - block.eps) * block.spacing * layers
+    k = 2.0 * math.pi * np.fft.rfftfreq(count, box / count)
+    waves = np.exp(-1j * np.outer(k, block.heights - z[0])).sum(axis=1) * porosity_transform(widths, k)
+    eps = 1.0 - (1.0 - block.eps) * block.spacing * np.fft.irfft(waves, count) * count / box
     return Field(z, eps, 1.0 / eps if answered is None else response(eps, box, widths.fluid, answered), box)
 
 
@@ -112,6 +144,7 @@ def velocity(fluid, block, widths, at, law=di_felice):
     gather = plane_average(apart, widths.gather).T
     gather = gather / gather.sum(axis=1, keepdims=True)
     eps, w = gather @ at.eps, gather @ at.w
+    eps = np.minimum(eps if widths.own_volume else eps + own_volume(widths), 1.0)  # a drag law knows nothing above 1
     own = scene.GRAIN_VOLUME * gather @ plane_average(apart, widths.spread) / block.spacing**2
     weight = (GRAIN["rho_p"] - rho) * scene.GRAIN_VOLUME * GRAVITY
 

@@ -30,14 +30,17 @@ class Setting:
         self.block = sedimentation_scene.Lattice(math.nan, round(sedimentation_scene.WIDTH / spacing), layers, spacing, low)
         widths = [cp[key]["times_smoothing"] * self.h if isinstance(cp[key], dict) else cp[key]
                   for key in ("kernel_width", "gather_width", "porosity_width")]
-        self.widths = sinking_block.Widths(self.h, *widths)
-        artificial = fluid["artificial_viscosity"] * self.c * self.h / 20.0  # alpha c h/(4 (d + 2)), approaching pairs only
+        self.widths = sinking_block.Widths(self.h, *widths, cp["porosity"], cp["own_volume"] == "included")
+        self.surface = fluid["fill"]["upper"][2] if fluid.get("free_surface") else None
+        artificial = fluid.get("artificial_viscosity", 0.0) * self.c * self.h / 20.0  # alpha c h/(4 (d + 2)), approaching pairs only
         reached = self.c**2 * self.end / (fluid["viscosity"] / fluid["density"] + artificial)
         self.answered = sinking_block.Answer(reached, fluid["spacing"])
 
     @property
     def period(self):
-        """Of the longest wave of sound, s."""
+        """Of the longest wave of sound, s; under a free surface a quarter of it stands in the fluid."""
+        if self.surface is not None:
+            return 4.0 * self.surface / self.c
         return (2.0 if self.closed else 1.0) * self.box / self.c
 
 
@@ -45,7 +48,7 @@ class Setting:
 def _theory(key):
     fluid, block, widths, box, answered, closed = key
     fluid = dict(fluid)
-    depth = box + 4.0 * max(widths) if closed else box  # a box with walls has no images: theirs are kept out of reach
+    depth = box + 4.0 * max(widths[:4]) if closed else box  # a box with walls has no images: theirs are kept out of reach
     at = sinking_block.field(block, depth, widths, answered)
     v = sinking_block.velocity(fluid, block, widths, at)
     return v, 1.0 if closed else sinking_block.share_in_box(at, smoothed_block.GRAIN["rho_p"] / fluid["rho"])
@@ -116,27 +119,42 @@ def table(runs):
             "rows": rows, "caption": "Fall of the block through clear fluid at rest."}
 
 
+PANELS = {"published": ("published widths", 2.6), "narrow": ("one narrow width", 1.3), "best": ("porosity deconvolved", 1.3)}
+MARKS = {6.0: "s", 4.0: "v", 3.0: "^", 2.0: "o", 1.5: "D"}
+
+
+def _panel(run):
+    """Where a run is shown; None: nowhere."""
+    words = run.variant.split("_")
+    if run.failure or words[0] not in ("water", "glycerol") or words[-1] in ("wider", "commensurate"):
+        return None
+    return next((word for word in PANELS if word in words), "published")
+
+
+def _draw(axes, shown):
+    """Points of the runs and lines of the theory; shown: [(fluid, _numbers)]."""
+    for index, width in enumerate(sorted(MARKS)):
+        for fluid, filled in (("water", False), ("glycerol", True)):
+            own = sorted(n for name, n in shown if name == fluid and abs(n[1] - width) < 0.1)
+            if not own:
+                continue
+            eps = [n[0] for n in own]
+            axes.plot(eps, [n[5] / n[7] for n in own], "--" if filled else "-", color=f"C{index}", lw=1.0)
+            axes.plot(eps, [n[4] / n[7] for n in own], MARKS[width], color=f"C{index}", ms=5,
+                      mfc=None if filled else "none", label=f"h/d = {width:g}, {fluid}")
+
+
 def figures(runs):
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(11.0, 4.0), layout="constrained")
-    panels = figure.subplots(1, 2)
-    good = [(run.variant, _numbers(run)) for run in runs if not run.failure
-            and run.variant.split("_")[0] in ("water", "glycerol") and run.variant.split("_")[-1] not in ("wider", "commensurate")]
-    marks = {6.0: "s", 4.0: "v", 3.0: "^", 2.0: "o", 1.5: "D"}
-    for axes, narrow, title in ((panels[0], False, "published widths"), (panels[1], True, "one narrow width")):
-        chosen = [(name, n) for name, n in good if name.endswith("_narrow") == narrow]
-        for index, width in enumerate(sorted({round(n[1], 2) for _, n in chosen})):
-            for fluid, filled in (("water", False), ("glycerol", True)):
-                own = sorted(n for name, n in chosen if round(n[1], 2) == width and name.startswith(fluid))
-                if not own:
-                    continue
-                eps = [n[0] for n in own]
-                axes.plot(eps, [n[5] / n[7] for n in own], "--" if filled else "-", color=f"C{index}", lw=1.0)
-                axes.plot(eps, [n[4] / n[7] for n in own], marks.get(width, "x"), color=f"C{index}", ms=5,
-                          mfc=None if filled else "none", label=f"h/d = {width:g}, {fluid}")
-        axes.axhspan(0.95, 1.05, color="0.9", zorder=0)
-        axes.set(title=title, xlabel="eps of the lattice (-)", ylabel="V over the law's at that eps (-)", ylim=(0.9, 2.6) if not narrow else (0.9, 1.3))
-        axes.legend(fontsize=7)
+    figure = Figure(figsize=(13.0, 4.0), layout="constrained")
+    good = [(_panel(run), run.variant.split("_")[0], _numbers(run)) for run in runs if _panel(run)]
+    for axes, (name, (title, top)) in zip(figure.subplots(1, 3), PANELS.items()):
+        _draw(axes, [(fluid, numbers) for panel, fluid, numbers in good if panel == name])
+        axes.axhspan(0.95, 1.05, color="0.85", zorder=0)
+        axes.axhspan(0.9, 1.1, color="0.93", zorder=-1)
+        axes.set(title=title, xlabel="eps of the lattice (-)", ylabel="V over the law's at that eps (-)", xlim=(0.5, 1.0), ylim=(0.9, top))
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(fontsize=7)
     return [("block", figure, "Fall of the block over that of a uniform suspension of the lattice's own porosity. Lines: theory, dashed in "
-             "glycerol-water; symbols: runs, filled in glycerol-water; grey: 5 %.")]
+             "glycerol-water; symbols: runs, filled in glycerol-water; grey: 5 and 10 %.")]
