@@ -61,6 +61,7 @@ def table(runs):
 
 def figures(runs):
     from matplotlib.figure import Figure
+    from matplotlib.ticker import NullFormatter
 
     figure, found = Figure(figsize=(12.0, 4.0), layout="constrained"), groups(runs)
     *panels, key = figure.subplots(1, 5, sharey=True, gridspec_kw={"width_ratios": [1.0, 1.0, 1.0, 1.0, 0.95]})
@@ -73,6 +74,7 @@ def figures(runs):
         axes.axhline(0.5, color="0.4", lw=0.8, label="0.5 %")
         axes.set_title(PANELS[fluid, eps], fontsize="small")
         axes.set(xlabel="CPU seconds", xscale="log", yscale="log")
+        axes.xaxis.set_minor_formatter(NullFormatter())
     handles = {label: handle for axes in panels for handle, label in zip(*axes.get_legend_handles_labels())}
     key.legend(handles.values(), handles.keys(), loc="center left", fontsize=8)
     key.axis("off")
