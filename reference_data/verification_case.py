@@ -1,4 +1,4 @@
-"""Loads reference.py of a verification case, for the tests of this folder."""
+"""Loads reference.py of a verification case, for the tests of this folder and for cases that judge by another one's theory."""
 
 import types
 from functools import lru_cache

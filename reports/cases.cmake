@@ -3,7 +3,7 @@
 #   <case>.quick      label quick      at most 20 CPU seconds
 #   <case>.must_fail  label quick      the broken twins
 #   <case>.full       label full       minutes
-#   <case>.campaign   label campaign   hours; only for cases whose sweep has campaign values
+#   <case>.campaign   label campaign   hours; only for cases whose sweep has campaign values, or with a check that names this tier
 #
 # All carry the case's area as a second label. Choose with the label:  ctest -L quick,  ctest -L full.
 # A plain `ctest` runs quick and full (under two hours); campaign tests need to be asked for:
@@ -37,7 +37,7 @@ function(plumb_add_case folder case_file)
     plumb_add_judgement("${case}" "${folder}" quick "quick;${area}" 300)
     plumb_add_judgement("${case}" "${folder}" must_fail "quick;${area}" 300)
     plumb_add_judgement("${case}" "${folder}" full "full;${area}" 7200)
-    file(STRINGS "${case_file}" campaign_line REGEX "^[^#\"]*campaign[ \t]*=" LIMIT_COUNT 1)
+    file(STRINGS "${case_file}" campaign_line REGEX "^[^#\"]*campaign[ \t]*=|^tiers[ \t]*=.*\"campaign\"" LIMIT_COUNT 1)
     if(campaign_line)
         plumb_add_judgement("${case}" "${folder}" campaign "campaign;${area}" 172800 CONFIGURATIONS campaign)
     endif()

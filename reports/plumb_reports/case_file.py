@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from .bisection_file import WorkPrecision, read_bisections, read_work_precision
-from .metrics import METRICS
+from .metrics import ENSEMBLE, METRICS
 from .presets import preset_overrides
 from .strict import CaseError, is_number, toml_table
 
@@ -189,6 +189,7 @@ def read_checks(table, reference, variants, sweep):
     for entry in table.tables("check"):
         check = read_check(entry, reference, variants)
         refuse_idle_check(entry, check)
+        refuse_impossible_ensemble(entry, check, variants, sweep)
         refuse_impossible_order(entry, check, variants, sweep)
         if any(c.id == check.id for c in checks):
             raise entry.error("id", f"{check.id!r} is used twice")
@@ -244,6 +245,16 @@ def refuse_idle_check(entry, check):
         raise entry.error("window", "is missing; an average is taken over a stated window")
     if check.not_met and check.order and check.finest:
         raise entry.error("not_met", "accepts one number; give the order a check of its own")
+
+
+def refuse_impossible_ensemble(entry, check, variants, sweep):
+    """Raises CaseError for an ensemble of one, or of swept variants."""
+    if check.metric != ENSEMBLE:
+        return
+    if len(check.variants) < 2:
+        raise entry.error("variants", "names fewer than two members of an ensemble")
+    if sweep and any(v.swept for v in variants if v.name in check.variants):
+        raise entry.error("variants", "names a swept variant; members of an ensemble have sweep = false")
 
 
 def refuse_impossible_order(entry, check, variants, sweep):

@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from . import verdicts
-from .metrics import Comparison, Measurement, NotComparable, measurement, value_measurement
+from .metrics import ENSEMBLE, Comparison, Measurement, NotComparable, measurement, value_measurement
 from .orders import NoOrder, OrderFit, order_fit
 
 
@@ -31,9 +33,35 @@ class Judgement:
 
 
 def judgements(case, tier, runs, reference):
-    """The Judgement of every check of `tier` for each of its variants."""
-    return [judgement(check, variant, tier, [r for r in runs if r.variant == variant], reference)
-            for check in case.checks if tier in check.tiers for variant in check.variants]
+    """The Judgement of every check of `tier` for each of its variants, or for all together if they are an ensemble."""
+    found = []
+    for check in (c for c in case.checks if tier in c.tiers):
+        if check.metric == ENSEMBLE:
+            found.append(ensemble_judgement(check, tier, [r for r in runs if r.variant in check.variants], reference))
+        else:
+            found += [judgement(check, variant, tier, [r for r in runs if r.variant == variant], reference)
+                      for variant in check.variants]
+    return found
+
+
+def ensemble_judgement(check, tier, runs, reference):
+    """The Judgement of one check on the mean of all its variants, one run each."""
+    name, bound = f"{check.variants[0]} to {check.variants[-1]}", check.bound(tier)
+    try:
+        data = ensemble([(run.variant, comparison(check, run, reference)) for run in runs])
+        mean = measured(check, data)
+    except NotComparable as error:
+        return Judgement(check, name, runs, verdicts.Verdict(verdicts.FAIL, str(error)), False, bound)
+    return Judgement(check, name, runs[-1:], bound_verdict(check, bound, mean), True, bound, [mean], [data])
+
+
+def ensemble(members):
+    """One Comparison of (variant, Comparison of single numbers) pairs: a row for each."""
+    for name, member in members:
+        if member.is_series:
+            raise NotComparable(f"{name}: a member of an ensemble is a single number, not a series")
+    measured_, expected = (np.concatenate([getattr(m, part) for _, m in members]) for part in ("measured", "expected"))
+    return Comparison(np.arange(1.0, len(members) + 1.0), measured_, expected, units=members[0][1].units, axis="member")
 
 
 def judgement(check, variant, tier, runs, reference, with_order=True):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .sampling import block_mean
+from .sampling import block_mean, half_width
 
 
 TIME_AXIS = "time (s)"
@@ -148,11 +148,22 @@ def in_sigma(data, window):
     return Errors(np.abs(mean.values) / scale, mean.bars / scale, mean.settled)
 
 
+def ensemble_relative(data, window):
+    """|<m - r>| / |<r>| over the independent members of an ensemble, one row each, with the sampling error of <m - r>."""
+    difference, count = data.measured - data.expected, len(data.measured)
+    scale = np.abs(np.mean(data.expected, axis=0))
+    error = np.abs(np.mean(difference, axis=0)) / scale
+    if count < 2:  # one member alone, as a twin's run
+        return Errors(error)
+    return Errors(error, half_width(np.std(difference, axis=0, ddof=1) / np.sqrt(count), count) / scale)
+
+
 ERRORS = {"relative_l2": relative_l2, "relative_linf": relative_linf, "absolute_linf": absolute_linf,
           "final_relative": final_relative, "final_absolute": final_absolute, "mean_relative": mean_relative,
-          "in_sigma": in_sigma}
+          "in_sigma": in_sigma, "ensemble_relative": ensemble_relative}
+ENSEMBLE = "ensemble_relative"  # judged once, on the runs of all variants of the check
 METRICS = (*ERRORS, "value")
-AT_ONE_POINT = ("final_relative", "final_absolute", "mean_relative", "in_sigma")
+AT_ONE_POINT = ("final_relative", "final_absolute", "mean_relative", "in_sigma", ENSEMBLE)
 
 
 def is_average(data, window):
@@ -173,7 +184,8 @@ def signed_deviations(metric, data, window, component):
     """(relative deviation, deviation in units of the uncertainty) where one point stands for the run, else None."""
     if metric not in AT_ONE_POINT:
         return None, None
-    rows = slice(None) if is_average(data, window) and metric in ("mean_relative", "in_sigma") else slice(-1, None)
+    averaged = metric == ENSEMBLE or is_average(data, window) and metric in ("mean_relative", "in_sigma")
+    rows = slice(None) if averaged else slice(-1, None)
     expected = np.mean(data.expected[rows, component])
     difference = np.mean(data.measured[rows, component]) - expected
     scale = 0.0 if data.uncertainty is None else np.mean(data.uncertainty[rows, component])

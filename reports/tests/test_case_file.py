@@ -143,6 +143,7 @@ MISTAKES = [
     (r"\[sweep\]", '[[variant]]\nname = "a"\nvalues = 2\n\n[sweep]', "which has values = 2"),
     (r"\[sweep\]", '[[variant]]\nname = "a"\nvalues = 2\nsweep = false\n\n[sweep]', "the variant is not swept"),
     (r"\[sweep\]", "[[figure]]\nx = \"log\"\n\n[sweep]", "'quantity' is missing"),
+    ('metric = "in_sigma"', 'metric = "ensemble_relative"', "names fewer than two members of an ensemble"),
     (r"\[sweep\]", "[[sweep]]", "'sweep' must be a table"),
 ]
 

@@ -217,6 +217,21 @@ def test_not_met(case, build):
     assert judged(case, build, "quick")[0] == 1
 
 
+def test_an_ensemble_is_judged_once(case, build):
+    plain = '[[variant]]\nname = "plain"\n\n'
+    members = "".join(f'[[variant]]\nname = "{n}"\nsweep = false\nset = {{"fake.terminal" = {v}}}\n\n' for n, v in (("low", 1.98), ("high", 2.04)))
+    case.edit("case.toml", r"\[sweep\]", plain + members + "[sweep]")
+    for identity in ("velocity", "terminal", "mean"):
+        case.edit("case.toml", f'id = "{identity}"', f'id = "{identity}"\nvariants = ["plain"]')
+    case.append("case.toml", '[[check]]\nid = "both"\nquantity = "terminal"\nmetric = "ensemble_relative"\nvariants = ["low", "high"]\n'
+                'tiers = ["quick"]\nfinest_quick = 0.3\nwhy = "Their mean is 2.01."\n')
+    _, report = judged(case, build, "quick")
+    (both,) = [c for c in report["checks"] if c["id"] == "both"]
+    assert both["variant"] == "low to high" and both["verdict"] == "pass" and both["points"] == 2
+    assert both["deviation"] == pytest.approx((2.01 * (1.0 - 2.718281828**-5) - 2.0) / 2.0, abs=1e-3)
+    assert both["error_bar"] == pytest.approx(12.706 * 0.03 / 2.0, rel=0.02)  # Student's t of one degree of freedom
+
+
 def test_over_budget_is_said(case, build, capsys):
     case.edit("scene.toml", "cpu_s = 0.5", "cpu_s = 8.0")
     code, report = judged(case, build, "quick")

@@ -97,3 +97,15 @@ def test_sigma_needs_an_uncertainty():
 def test_a_mean_of_one_point_is_refused():
     with pytest.raises(NotComparable):
         measurement("mean_relative", data([1, 1, 1], [1, 1, 1]), window=(0.5, 1.5))
+
+
+def test_ensemble_counts_its_members_as_independent():
+    # differences 0.1, -0.1, 0.3: mean 0.1, deviation 0.2; Student's t of two degrees of freedom is 4.3027 at 95 %
+    result = measurement("ensemble_relative", data([2.1, 1.9, 2.3], [2.0, 2.0, 2.0]))
+    assert result.value == pytest.approx(0.05) and result.deviation == pytest.approx(0.05)
+    assert result.error_bar == pytest.approx(4.3027 * 0.2 / 3**0.5 / 2.0, rel=1e-4)
+
+
+def test_one_member_alone_has_no_error_bar():
+    result = measurement("ensemble_relative", data([2.1], [2.0], t=T[:1]))
+    assert result.value == pytest.approx(0.05) and result.error_bar is None

@@ -1,4 +1,5 @@
-"""Writes dense_<percent>_<seed>.csv: random packings of equal hard spheres in a periodic cube, denser than random addition can make.
+"""Writes dense_<percent>_<seed>.csv: fluids of equal hard spheres in a periodic cube, which random addition does not make (fluid fraction
+0.8: its long waves are a third too weak) or cannot reach (0.6, 0.5).
 
 A stretched lattice of nearly evenly spread places melts in a Monte Carlo walk of hard spheres. (Places thrown at random and pushed
 apart would keep the large-scale fluctuations of the throw, many times those of a fluid of hard spheres.) /usr/bin/python3 beds.py
@@ -6,15 +7,25 @@ apart would keep the large-scale fluctuations of the throw, many times those of 
 
 import math
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 HERE = Path(__file__).resolve().parent
-SWEEPS, STEP, LEAST = 200, 0.15, 1.0 + 1e-4  # of the walk; its greatest step and the least distance, in diameters
+LEAST = 1.0 + 1e-4  # distance in diameters
 CELLS = {"body": ((0.0, 0.0, 0.0), (0.5, 0.5, 0.5)), "face": ((0.0, 0.0, 0.0), (0.5, 0.5, 0.0), (0.5, 0.0, 0.5), (0.0, 0.5, 0.5))}
-BEDS = {60: ("face", (7, 7, 7)), 50: ("body", (9, 9, 10))}  # fluid fraction in per cent: lattice, cells along the axes
-SEEDS = (1, 2, 3)
+
+
+class Bed(NamedTuple):
+    kind: str  # of the lattice that melts
+    cells: tuple  # along the axes
+    sweeps: int  # of the walk: long enough for the box's longest wave, of rate D k^2/S(0)
+    step: float  # its greatest step, diameters
+    seeds: int  # numbered from 1
+
+
+BEDS = {80: Bed("body", (7, 7, 7), 400, 0.5, 12), 60: Bed("face", (7, 7, 7), 200, 0.15, 6), 50: Bed("body", (9, 9, 10), 200, 0.15, 6)}  # by percent of fluid
 
 
 def lattice(kind, cells, side):
@@ -25,17 +36,17 @@ def lattice(kind, cells, side):
 
 def side_of(percent):
     """Side of the cube in diameters that makes the fluid fraction exact."""
-    kind, cells = BEDS[percent]
-    return (len(CELLS[kind]) * math.prod(cells) * math.pi / 6.0 / (1.0 - percent / 100.0)) ** (1.0 / 3.0)
+    bed = BEDS[percent]
+    return (len(CELLS[bed.kind]) * math.prod(bed.cells) * math.pi / 6.0 / (1.0 - percent / 100.0)) ** (1.0 / 3.0)
 
 
-def walk(x, side, random):
+def walk(x, side, sweeps, step, random):
     """Metropolis' walk of hard spheres: a move is allowed when it ends near nobody."""
-    reach = 1.0 + 2.0 * STEP * math.sqrt(3.0) + 1e-3
-    for _ in range(SWEEPS):
+    reach = 1.0 + 2.0 * step * math.sqrt(3.0) + 1e-3
+    for _ in range(sweeps):
         neighbours = cKDTree(x, boxsize=side).query_ball_point(x, reach)
         for k in random.permutation(len(x)):
-            place = x[k] + STEP * random.uniform(-1.0, 1.0, 3)
+            place = x[k] + step * random.uniform(-1.0, 1.0, 3)
             away = x[[j for j in neighbours[k] if j != k]] - place
             away -= side * np.rint(away / side)
             if not len(away) or (away**2).sum(axis=1).min() > LEAST**2:
@@ -46,12 +57,15 @@ def walk(x, side, random):
 
 
 def main():
-    for percent, (kind, cells) in BEDS.items():
+    for percent, bed in BEDS.items():
         side = side_of(percent)
-        for seed in SEEDS:
-            x = walk(lattice(kind, cells, side), side, np.random.default_rng(1000 * percent + seed))
+        for seed in range(1, bed.seeds + 1):
+            path = HERE / f"dense_{percent}_{seed}.csv"
+            if path.exists():
+                continue
+            x = walk(lattice(bed.kind, bed.cells, side), side, bed.sweeps, bed.step, np.random.default_rng(1000 * percent + seed))
             lines = ["x [m],y [m],z [m]"] + [",".join(f"{c:.5f}e-4" for c in place) for place in x]
-            (HERE / f"dense_{percent}_{seed}.csv").write_text("\n".join(lines) + "\n")
+            path.write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

@@ -1,7 +1,9 @@
 """Slip of random periodic suspensions under Di Felice's law, and what correlated places add to it (README.md)."""
 
 import math
+import re
 import sys
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +18,7 @@ from theory import self_disturbance, sph_operators  # noqa: E402
 from theory.packed_beds import richardson_zaki_exponent  # noqa: E402
 from theory.settling import archimedes, hindered_re  # noqa: E402
 
-UNITS = {"at_grain": "1", "under_stress": "1", "off_theory": "1", "momentum": "1"}
+UNITS = {"at_grain": "1", "under_stress": "1", "off_theory": "1", "off_corrected": "1", "settling": "m/s", "momentum": "1"}
 REACH = 10.0  # of wave vectors, over h: the product of two kernels is below 1e-5 there
 
 
@@ -51,11 +53,11 @@ class Bed:
 
         return brentq(excess, 1e-9 * stokes, 3.0 * stokes, rtol=1e-12)
 
-    def mean_slip(self, eps, own_share):
+    def mean_slip(self, eps, own_share, less=0.0):
         """The law's slip averaged over the porosities eps [n] of the grains, by an interpolated table. `own_share`: every
-        grain's drag is its own eps times the weight, not that of the bed."""
+        grain's drag is its own eps, `less` something, times the weight, not that of the bed."""
         nodes = np.linspace(eps.min(), eps.max(), 33)
-        return float(np.interp(eps, nodes, [self.slip(e, e if own_share else None) for e in nodes]).mean())
+        return float(np.interp(eps, nodes, [self.slip(e, e - less if own_share else None) for e in nodes]).mean())
 
 
 # --- sums over a snapshot ---
@@ -100,19 +102,20 @@ class Waves:
         side = np.arange(-top, top + 1)
         n = np.stack(np.meshgrid(side, side, side, indexing="ij"), axis=-1).reshape(-1, 3)
         first = (n[:, 2] > 0) | ((n[:, 2] == 0) & ((n[:, 1] > 0) | ((n[:, 1] == 0) & (n[:, 0] > 0))))
-        self.vectors = unit * n[first & ((n**2).sum(axis=1) <= top**2)]
-        self.k = np.linalg.norm(self.vectors, axis=1)
-        self.cosine = self.vectors[:, 2] / self.k
+        self.numbers = n[first & ((n**2).sum(axis=1) <= top**2)]  # of waves along the sides
+        self.unit, self.top = unit, top
+        self.k = unit * np.linalg.norm(self.numbers, axis=1)
+        self.cosine = unit * self.numbers[:, 2] / self.k
         self.filter = sph_operators.transform(bed.kernel, 3, self.k * bed.h)
         self.fluid_filter = sph_operators.transform(bed.kernel, 3, self.k * bed.smoothing)
         self.viscosity = self.k**2 * sph_operators.viscosity_ratio(bed.kernel, 3, self.k * bed.smoothing)
 
     def structure(self, x):
-        """S(k) of the places x [n, 3]: |sum exp(i k.x)|^2/n."""
-        total = np.zeros(len(self.k), complex)
-        for part in np.array_split(x, max(1, len(x) // 100)):
-            total += np.exp(1j * (self.vectors @ part.T)).sum(axis=1)
-        return np.abs(total) ** 2 / len(x)
+        """S(k) of the places x [n, 3]: |sum exp(i k.x)|^2/n, the exponential a product of three."""
+        orders = self.unit * np.arange(-self.top, self.top + 1)
+        along = [np.exp(1j * np.outer(orders, x[:, axis])) for axis in range(3)]
+        total = np.stack([(along[1] * first) @ along[2].T for first in along[0]])
+        return np.abs(total[tuple((self.numbers + self.top).T)]) ** 2 / len(x)
 
 
 def carried(bed, waves, structure, t):
@@ -124,6 +127,23 @@ def carried(bed, waves, structure, t):
     slope = (bed.slip(bed.eps + step) - bed.slip(bed.eps - step)) / (2.0 * step)
     backflow = bed.volume * w**2 * c2 * (slip - bed.phi * w**2 * slope) / (bed.eps * waves.fluid_filter + bed.phi * w**2)
     return 2.0 * float(structure @ (wakes + backflow)) / bed.side**3
+
+
+# --- what the correction takes out: README, equations (5) and (6) ---
+
+
+def own_marks(bed, structure_of, c_s, slip, t):
+    """(velocity [m/s] upwards, share of volume) that `self_disturbance` takes out of what a grain gathers: the integral over all waves of
+    unbounded space, with S = structure_of(k), of the wake of the grain's own push eps W, and of its backflow at the slip w."""
+    scheme = self_disturbance.one_kernel(bed.kernel, bed.h)
+    k, dk = self_disturbance.wave_numbers(scheme)
+    measure = dk * k**2 / (2.0 * math.pi**2) * structure_of(k) * sph_operators.transform(bed.kernel, 3, k * bed.h) ** 2
+    rate = bed.mu / bed.rho * k**2 * sph_operators.viscosity_ratio(bed.kernel, 3, k * bed.smoothing)
+    wake = -(2.0 / 3.0) * bed.eps * bed.weight / bed.rho * float(measure @ (-np.expm1(-rate * t) / rate))
+    own = sph_operators.transform(bed.kernel, 3, k * bed.smoothing)
+    seen = own > 1e-6  # waves that the fluid's own kernel does not see have no pressure
+    settled = np.where(seen, -np.expm1(-((c_s * k * own) ** 2) / rate * t) / np.where(seen, own, 1.0), 0.0)
+    return wake + bed.volume / 3.0 * slip * float(measure @ settled), bed.volume * float(measure.sum())
 
 
 class State:
@@ -141,13 +161,35 @@ class State:
         self.slip = self.at_grain - self.carried
         waves = Waves(self.bed)
         self.predicted = carried(self.bed, waves, waves.structure(x), snapshot["time"])
-        fluid = self_disturbance.percus_yevick(self.bed.phi, self.bed.d)(waves.k)
-        self.of_fluid = carried(self.bed, waves, fluid, snapshot["time"])
+        hard_spheres = self_disturbance.percus_yevick(self.bed.phi, self.bed.d)
+        self.of_fluid = carried(self.bed, waves, hard_spheres(waves.k), snapshot["time"])
+        self.hindered = self.bed.slip(self.bed.eps)
+        self.taken, self.law_corrected = 0.0, self.law_under_stress
+        if corrected(run):  # equations (5) and (6)
+            c_s = run.scene["fluid"]["sound_speed"]
+            self.taken, share = own_marks(self.bed, hard_spheres, c_s, self.hindered, snapshot["time"])
+            self.law_corrected = self.bed.mean_slip(np.minimum(self.eps + share, 1.0), True, self.bed.phi * share)
+        self.predicted_slip = self.law_corrected + self.taken - self.predicted
 
     @property
     def off_theory(self):
         """Distance from (4) over the larger of a tenth of the disturbance and 0.5 % of the law's slip."""
         return abs(self.carried - self.predicted) / max(0.1 * abs(self.predicted), 0.005 * self.law)
+
+    @property
+    def off_corrected(self):
+        """Distance of a corrected run's slip from (6), over the same bound."""
+        return abs(self.slip - self.predicted_slip) / max(0.1 * abs(self.predicted), 0.005 * self.law)
+
+
+def corrected(run):
+    """Whether the case means this run to be corrected; a twin may have broken it."""
+    return run.variant.startswith("corrected")
+
+
+@lru_cache(maxsize=None)
+def last_state(run):
+    return State(run)
 
 
 def momentum(run):
@@ -164,34 +206,39 @@ def momentum(run):
 def reference(quantity, scene, t):
     if quantity in ("at_grain", "under_stress"):
         return 1.0
+    if quantity == "settling":
+        arrange = scene["grains"]["arrange"]
+        grains = arrange["count"] if arrange["law"] == "random" else sum(1 for _ in open(HERE / arrange["path"], encoding="utf-8")) - 1
+        bed = Bed(scene, grains)
+        return bed.eps * bed.slip(bed.eps)
     raise KeyError(quantity)
 
 
 def measure(quantity, run):
     if quantity == "momentum":
         return momentum(run)
+    if quantity == "settling":
+        (_, u), (_, v) = run.series("fluid"), run.series("grains")
+        return last_state(run).bed.eps * float(np.ravel(u)[-1] - np.ravel(v)[-1])
     if quantity == "at_grain":
-        state = State(run)
-        return state.at_grain / state.law
+        return last_state(run).at_grain / last_state(run).law
     if quantity == "under_stress":
-        state = State(run)
-        return state.at_grain / state.law_under_stress
-    if quantity == "off_theory":
-        return State(run).off_theory
+        return last_state(run).at_grain / last_state(run).law_under_stress
+    if quantity in ("off_theory", "off_corrected"):
+        return getattr(last_state(run), quantity)
     return NotImplemented
 
 
 # --- the ensembles ---
 
 
-def ensembles(runs):
-    """{nominal fluid fraction: states of its runs}."""
+def ensembles(runs, prefix):
+    """{name: states of its runs} of the variants <name>_<number> whose names begin with the prefix."""
     found = {}
     for run in runs:
-        if not run.failure and run.variant.startswith("eps") and not run.variant.endswith("short"):
-            state = State(run)
-            found.setdefault(round(state.bed.eps, 3), []).append(state)
-    return dict(sorted(found.items()))
+        if not run.failure and run.variant.startswith(prefix) and re.search(r"_\d+$", run.variant):
+            found.setdefault(re.sub(r"_\d+$", "", run.variant), []).append(last_state(run))
+    return dict(sorted(found.items(), key=lambda pair: (-round(pair[1][0].bed.eps, 3), pair[0])))
 
 
 def mean(values):
@@ -206,20 +253,28 @@ def alone(bed):
     return re, re * bed.mu / (bed.rho * bed.d)
 
 
+def percent(values):
+    """Text of the mean in per cent with its standard error."""
+    value, error = mean(values)
+    return f"{100 * value:.2f} +- {100 * error:.2f}"
+
+
 def table(runs):
     rows = []
-    for eps, states in ensembles(runs).items():
-        bed, (re, speed) = states[0].bed, alone(states[0].bed)
-        carried_by, error = mean([-s.carried / s.law for s in states])
+    for name, states in [*ensembles(runs, "eps").items(), *ensembles(runs, "corrected").items()]:
+        bed, (re_t, speed) = states[0].bed, alone(states[0].bed)
+        eps = bed.eps
         settling, settling_error = mean([eps * s.slip / speed for s in states])
-        rows.append([f"{eps:.3f}", str(len(states)), f"{mean([s.at_grain / s.law for s in states])[0]:.4f}",
-                     f"{mean([s.at_grain / s.law_under_stress for s in states])[0]:.4f}",
-                     f"{100 * carried_by:.2f} +- {100 * error:.2f}", f"{100 * mean([-s.predicted / s.law for s in states])[0]:.2f}",
-                     f"{100 * mean([-s.of_fluid / s.law for s in states])[0]:.2f}", f"{settling:.4f} +- {settling_error:.4f}",
-                     f"{eps * bed.slip(eps) / speed:.4f}", f"{eps ** richardson_zaki_exponent(re):.4f}"])
-    return {"columns": ["eps", "runs", "slip at grains over the law's", "over the law under stress", "carried by wakes, % of slip",
-                        "theory, S of the places", "theory, Percus-Yevick", "settling speed over u_t", "law alone", "Richardson-Zaki"],
-            "rows": rows, "caption": "Means over the ensembles, with their standard error."}
+        rows.append([name, f"{eps:.3f}", f"{bed.side / bed.d:.1f}", str(len(states)), f"{mean([s.at_grain / s.law for s in states])[0]:.4f}",
+                     f"{mean([s.at_grain / s.law_under_stress for s in states])[0]:.4f}", percent([-s.carried / s.law for s in states]),
+                     f"{100 * mean([-s.predicted / s.law for s in states])[0]:.2f}", f"{100 * mean([-s.of_fluid / s.law for s in states])[0]:.2f}",
+                     f"{100 * mean([-s.taken / s.law for s in states])[0]:.2f}", percent([s.slip / s.hindered - 1.0 for s in states]),
+                     f"{100 * mean([s.predicted_slip / s.hindered - 1.0 for s in states])[0]:.2f}", f"{settling:.4f} +- {settling_error:.4f}",
+                     f"{eps * bed.slip(eps) / speed:.4f}", f"{eps ** richardson_zaki_exponent(re_t):.4f}"])
+    return {"columns": ["beds", "eps", "side over d", "runs", "slip at grains over the law's", "over the law under stress", "carried by wakes, % of slip",
+                        "theory, S of the places", "theory, Percus-Yevick", "taken out", "settling off the law, %", "its theory", "settling speed over u_t",
+                        "law alone", "Richardson-Zaki"],
+            "rows": rows, "caption": "Means over the ensembles, with their standard error. In corrected beds grains feel the slip at the grains plus what is taken out."}
 
 
 def figure_of(runs):
@@ -227,8 +282,9 @@ def figure_of(runs):
 
     figure = Figure(figsize=(10.0, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
-    for number, (eps, states) in enumerate(ensembles(runs).items()):
-        speed = alone(states[0].bed)[1]
+    plain = ensembles(runs, "eps")
+    for number, states in enumerate(plain.values()):
+        speed, eps = alone(states[0].bed)[1], states[0].bed.eps
         for k, s in enumerate(states):
             left.plot(-100 * s.predicted / s.law, -100 * s.carried / s.law, "o", ms=4, mfc="none", color=f"C{number}",
                       label=None if k else f"eps {eps:.2f}")
@@ -239,12 +295,12 @@ def figure_of(runs):
     left.set_xlabel("carried by wakes, theory with the places' own S(k) [% of slip]")
     left.set_ylabel("carried by wakes, run [% of slip]")
     left.legend(fontsize="x-small")
-    states = next(iter(ensembles(runs).values()), None)
+    states = next(iter(plain.values()), None)
     if states:
-        bed, (re, speed) = states[0].bed, alone(states[0].bed)
+        bed, (re_t, speed) = states[0].bed, alone(states[0].bed)
         ar, eps = archimedes(bed.rho_p, bed.rho, bed.d, bed.mu, bed.g), np.linspace(0.45, 1.0, 80)
         right.plot(eps, [hindered_re(ar, e, 1) * bed.mu / (bed.rho * bed.d) / speed for e in eps], "-", label="law, uniform")
-        right.plot(eps, eps ** richardson_zaki_exponent(re), "--", label="Richardson-Zaki")
+        right.plot(eps, eps ** richardson_zaki_exponent(re_t), "--", label="Richardson-Zaki")
     right.set_yscale("log")
     right.set_xlabel("fluid fraction eps [-]")
     right.set_ylabel("settling speed over u_t [-]")
@@ -252,6 +308,38 @@ def figure_of(runs):
     return figure
 
 
+def off_law(states):
+    """(theory, runs) [n]: settling speed off the law, %."""
+    return [100 * np.array([getattr(s, name) / s.hindered - 1.0 for s in states]) for name in ("predicted_slip", "slip")]
+
+
+def corrected_figure(runs):
+    """Left: every corrected bed against theory. Right: the means of the ensembles, not corrected and corrected."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11.0, 4.2), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    all_beds = {**ensembles(runs, "eps"), **ensembles(runs, "corrected")}
+    for row, (name, states) in enumerate(all_beds.items()):
+        theory, run = off_law(states)
+        colour = "0.6" if name.startswith("eps") else f"C{row % 10}"
+        if not name.startswith("eps"):
+            left.plot(theory, run, "o", ms=4, mfc="none", color=colour, label=name)
+        value, error = mean(run)
+        right.errorbar(value, -row, xerr=0.0 if math.isnan(error) else error, fmt="o", color=colour, capsize=2)
+        right.plot(theory.mean(), -row, "k|", ms=12)
+    left.axline((0.0, 0.0), slope=1.0, color="k", lw=0.6)
+    left.set_xlabel("settling speed off the law, theory with the places' own S(k) [%]")
+    left.set_ylabel("run [%]")
+    left.legend(fontsize="x-small")
+    right.axvspan(-2.0, 2.0, color="0.92", zorder=0)
+    right.set_yticks([-row for row in range(len(all_beds))], list(all_beds), fontsize="x-small")
+    right.set_xlabel("settling speed off the law, mean of the beds [%]")
+    return figure
+
+
 def figures(runs):
     return [("ensemble", figure_of(runs), "Left: mean fluid velocity at the grains below that of the box, run against theory; dotted: Percus-Yevick. "
-             "Right: settling speed at zero momentum.")]
+             "Right: settling speed at zero momentum."),
+            ("corrected", corrected_figure(runs), "Left: corrected beds against theory. Right: means with their standard error, bars: theory, grey band: 2 %; "
+             "grey points: not corrected.")]

@@ -1,13 +1,14 @@
 """What rayleigh_taylor costs: its error in the rates and CPU seconds, as published and with what replaces it (README.md)."""
 
-import importlib.util
-import re
-import statistics
+import sys
 from pathlib import Path
 
-_spec = importlib.util.spec_from_file_location("rayleigh_taylor_reference", Path(__file__).resolve().parents[1] / "rayleigh_taylor" / "reference.py")
-scene_theory = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(scene_theory)
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "reference_data"))
+
+from run_costs import cheaper, cost, repeated  # noqa: E402
+from verification_case import case  # noqa: E402
+
+scene_theory = case("rayleigh_taylor")
 
 UNITS = {"growth": "1"}
 GOAL = 5.0  # of as_code's CPU seconds over plumb_grains'
@@ -27,26 +28,12 @@ def reference(quantity, scene, t):
 # --- the page ---
 
 
-def groups(runs):
-    """{scheme: its runs}; runs repeated for their cost end with _2, _3."""
-    found = {}
-    for run in runs:
-        found.setdefault(re.sub(r"_\d$", "", run.variant), []).append(run)
-    return found
-
-
-def cost(runs):
-    """Median CPU seconds."""
-    return statistics.median(run.info["cpu_s"] for run in runs)
-
-
 def table(runs):
-    found, rows = groups(runs), []
+    found, rows = repeated(runs), []
     for scheme, same in found.items():
         (one, linear_one), (other, linear_other) = scene_theory.growth(same[0])
-        cheaper = f"{cost(found['as_code']) / cost(same):.1f}" if "as_code" in found else ""
         rows.append([LABELS[scheme], same[0].info["steps"], f"{one / linear_one - 1.0:+.3f}", f"{other / linear_other - 1.0:+.3f}",
-                     f"{cost(same):.2f}", " ".join(f"{run.info['cpu_s']:.2f}" for run in same), cheaper])
+                     f"{cost(same):.2f}", " ".join(f"{run.info['cpu_s']:.2f}" for run in same), cheaper(found.get("as_code"), same)])
     return {"columns": ["run", "steps", "error of the rate, k", "sqrt 2 k", "CPU s (median)", "each", "as_code's CPU over it"], "rows": rows,
             "caption": f"50 ms of rayleigh_taylor, glycerol-water, 10 across. Goal: as_code's CPU seconds over those of plumb_grains at least {GOAL:g}."}
 
@@ -54,7 +41,7 @@ def table(runs):
 def figures(runs):
     from matplotlib.figure import Figure
 
-    figure, found = Figure(figsize=(6.0, 4.4), layout="constrained"), groups(runs)
+    figure, found = Figure(figsize=(6.0, 4.4), layout="constrained"), repeated(runs)
     axes = figure.subplots()
     for scheme, same in found.items():
         axes.plot(cost(same), 100.0 * measure("growth", same[0]), "o", ms=8, label=LABELS[scheme])

@@ -1,7 +1,5 @@
 """What one grain costs: distance from the drag law's own relaxation, and CPU seconds beside those of the published scheme (README.md)."""
 
-import re
-import statistics
 import sys
 from pathlib import Path
 
@@ -10,6 +8,7 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
+from run_costs import cheaper, cost, repeated  # noqa: E402
 from theory import settling  # noqa: E402
 from theory.lone_grain import law_of  # noqa: E402
 from theory.released_sphere import Sphere, speed_without_history  # noqa: E402
@@ -54,28 +53,17 @@ def reference(quantity, scene, t):
 
 
 def groups(runs):
-    """{(fluid, scheme): its runs}; runs repeated for their cost end with _2, _3."""
-    found = {}
-    for run in runs:
-        fluid, scheme = re.sub(r"_\d$", "", run.variant).split("_", 1)
-        found.setdefault((fluid, scheme), []).append(run)
-    return found
-
-
-def cost(runs):
-    """Median CPU seconds."""
-    return statistics.median(run.info["cpu_s"] for run in runs)
+    """{(fluid, scheme): its runs}."""
+    return {tuple(name.split("_", 1)): same for name, same in repeated(runs).items()}
 
 
 def table(runs):
     found, rows = groups(runs), []
     for (fluid, scheme), same in found.items():
         seconds, first = [run.info["cpu_s"] for run in same], same[0]
-        published = found.get((fluid, "as_code"))
-        cheaper = f"{cost(published) / cost(same):.1f}" if published else ""
         rows.append([FLUIDS[fluid], LABELS[scheme], f"{100.0 * measure('off_law', first):.2f}", first.info["steps"], first.info["sph"]["particles"],
                      f"{1e6 * cost(same) / first.info['updates']:.2f}", f"{cost(same):.2f}", f"{min(seconds):.2f} to {max(seconds):.2f}" if len(same) > 1 else "",
-                     cheaper])
+                     cheaper(found.get((fluid, "as_code")), same)])
     return {"columns": ["fluid", "run", "error (%)", "steps", "particles", "CPU us/update", "CPU s (median)", "range", "as_code's CPU over it"], "rows": rows,
             "caption": "One grain, h/d = 3, 50 tau_p. Error: greatest distance from the drag law from 5 tau_p on, over u_t. Goal: as_code's CPU seconds over those of "
                        "plumb_grains at least " + ", ".join(f"{GOAL[fluid]:g} ({FLUIDS[fluid]})" for fluid in GOAL) + "."}
