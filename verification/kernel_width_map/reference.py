@@ -81,12 +81,23 @@ def missed(s, at):
     _, u = settled(s, tuple(times))
     modes = self_disturbance.box_modes(s.scheme, s.box, reach=14.0)
     u_t, ramp = terminal_speed(s), 1.0 - np.exp(-times / s.tau)
-    between = found.u[5::6] - (u - backflow(s.scheme, modes, s) * u_t * ramp)
+    between = followed(times / s.tau, found.u[5::6] - (u - backflow(s.scheme, modes, s) * u_t * ramp))
     own = self_disturbance.own_volume_fraction(s.scheme, s.d)  # which the correction puts back, up to eps = 1
     speeds = [law_speed(s, eps) for eps in (1.0 - own, 1.0 - found.own, min(1.0, 1.0 + own - found.own))]
     corrected = np.abs(between + speeds[2] - u_t)[times > EARLIEST * s.tau]
     plain = np.abs(between + speeds[1] - speeds[0])
     return float(corrected.max()) / (MOST * u_t), float(np.max(plain / np.maximum(SHARE * u, FLOOR * u_t)))
+
+
+def followed(t, u):
+    """What a grain makes of a velocity of the fluid: dv/dt = u - v from rest, t in relaxation times; u straight between the times."""
+    v, last, speed = np.zeros(len(t)), 0.0, 0.0
+    for n, (step, now) in enumerate(zip(np.diff(t, prepend=0.0), u)):
+        left = math.exp(-step)
+        slope = (now - last) / step
+        speed = now - slope + (speed - last + slope) * left
+        v[n], last = speed, now
+    return v
 
 
 def law_speed(s, eps):
