@@ -82,13 +82,18 @@ void remember_rates(SphFluid& f) {
     std::swap(f.drho, f.drho_before);
 }
 
+/// Density of the fluid itself [kg/m3]: among grains not the particle's, which takes more room there.
+double own_density(const SphFluid& f, std::size_t k) {
+    return f.among_grains() ? f.rho[k] * f.share[k] / f.eps[k] : f.rho[k];
+}
+
 [[noreturn]] void report_divergence(const SphFluid& f, std::size_t k, std::int64_t step, double dt, double speed) {
     const double time = dt * static_cast<double>(step);
     const std::int32_t id = f.id[k] >= 0 ? f.id[k] : f.id[k / pack_width * pack_width];
     if (!(speed <= f.sound_speed))
         throw Diverged(step, time, "fluid velocity", id, speed,
                        std::isfinite(speed) ? "more than the speed of sound" : "not a number");
-    throw Diverged(step, time, "fluid density", id, f.rho[k], "changed by more than half");
+    throw Diverged(step, time, "fluid density", id, own_density(f, k), "changed by more than half");
 }
 
 /// Moves eight particles down the gradient of the concentration, by a tenth of the spacing at most, and gives them the
@@ -130,7 +135,9 @@ void correct(SphFluid& f, double dt, std::int64_t step) {
         });
         add(f.rho, cluster, interval * load(f.drho, cluster));
         if (shift > 0.0) shift_particles(f, cluster, shift);
-        const Pack change = load(f.rho, cluster) - broadcast<Pack>(f.density);
+        Pack own = load(f.rho, cluster);
+        if (f.among_grains()) own *= load(f.share, cluster) / load(f.eps, cluster);
+        const Pack change = own - broadcast<Pack>(f.density);
         const PackMask sound = (speed_sq <= broadcast<Pack>(slow)) & // written so that NaN fails
                                (change <= broadcast<Pack>(half)) & (change >= broadcast<Pack>(-half));
         if (!any(~sound)) return;

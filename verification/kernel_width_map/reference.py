@@ -10,11 +10,15 @@ import numpy as np
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
+sys.path.insert(0, str(HERE))
 
+import lattice_wake  # noqa: E402
 from theory import self_disturbance, self_disturbance_history, settling, sph_operators  # noqa: E402
 from theory.lone_grain import OwnVolume, backflow, by_law, law_of, terminal_speed  # noqa: E402
+from theory.released_sphere import Sphere  # noqa: E402
 
-UNITS = {"off_theory": "1", "off_law": "1"}
+UNITS = {"off_theory": "1", "off_law": "1", "law_met": "1", "theory_met": "1", "edge": "1", "edge_ratio": "1"}
+MOST = 0.005  # a corrected grain may be off the law by, of u_t
 SHARE, FLOOR, EARLIEST = 0.10, 0.005, 5.0  # of the wake, of u_t; in tau_p
 SMOOTHING = 1.5  # h over the spacing
 
@@ -69,6 +73,54 @@ def lattice_noise(s):
     return 6.0 * abs(float(sph_operators.transform(s.kernel, 3, 2.0 * math.pi * SMOOTHING * s.width)))
 
 
+@lru_cache(maxsize=None)
+def missed(s, at):
+    """(over the bound of the law, over that of the theory): what lattice and correction or theory disagree on, equation (5)."""
+    found = lattice_wake.felt(s, s.h / SMOOTHING, at, terminal_speed(s))
+    times = found.t[5::6]
+    _, u = settled(s, tuple(times))
+    modes = self_disturbance.box_modes(s.scheme, s.box, reach=14.0)
+    u_t, ramp = terminal_speed(s), 1.0 - np.exp(-times / s.tau)
+    between = followed(times / s.tau, found.u[5::6] - (u - backflow(s.scheme, modes, s) * u_t * ramp))
+    own = self_disturbance.own_volume_fraction(s.scheme, s.d)  # which the correction puts back, up to eps = 1
+    speeds = [law_speed(s, eps) for eps in (1.0 - own, 1.0 - found.own, min(1.0, 1.0 + own - found.own))]
+    corrected = np.abs(between + speeds[2] - u_t)[times > EARLIEST * s.tau]
+    plain = np.abs(between + speeds[1] - speeds[0])
+    return float(corrected.max()) / (MOST * u_t), float(np.max(plain / np.maximum(SHARE * u, FLOOR * u_t)))
+
+
+def followed(t, u):
+    """What a grain makes of a velocity of the fluid: dv/dt = u - v from rest, t in relaxation times; u straight between the times."""
+    v, last, speed = np.zeros(len(t)), 0.0, 0.0
+    for n, (step, now) in enumerate(zip(np.diff(t, prepend=0.0), u)):
+        left = math.exp(-step)
+        slope = (now - last) / step
+        speed = now - slope + (speed - last + slope) * left
+        v[n], last = speed, now
+    return v
+
+
+def law_speed(s, eps):
+    return Sphere(law_of(eps), s.rho_p, s.d, s.rho, s.mu).terminal_speed()
+
+
+def predicted_edge(s, at, kind):
+    """Width over h at which `missed` is one: the grain's own lattice, no constant."""
+    low, high = 0.55, 1.1  # to 0.5 %
+    for _ in range(7):
+        middle = math.sqrt(low * high)
+        low, high = (middle, high) if missed(s._replace(width=middle), at)[kind] > 1.0 else (low, middle)
+    return math.sqrt(low * high)
+
+
+def kind_of(run):
+    return 0 if "corrected" in run.variant else 1
+
+
+def place(run):
+    return tuple(run.scene["grains"]["arrange"]["position"])
+
+
 def fall(run):
     t, v = run.series("v")
     return t[1:], -np.ravel(v)[1:]
@@ -81,13 +133,31 @@ def off_law(run):
     return float(np.max(np.abs(v - law)[t > EARLIEST * s.tau * (1.0 - 1e-9)])) / terminal_speed(s)
 
 
+def off_theory(run):
+    """Greatest distance from linear theory without a lattice over its bound."""
+    s, (t, v) = setting(run.scene), fall(run)
+    expected, u = settled(s, tuple(t))
+    return float(np.max(np.abs(v - expected) / np.maximum(SHARE * u, FLOOR * terminal_speed(s))))
+
+
+def edge(run):
+    """Width of a bisected variant between which and the next narrower one the bound is crossed: the bisection's "unstable" is "met"."""
+    return math.sqrt(run.stable * run.unstable)
+
+
 def measure(quantity, run):
     if quantity == "off_law":
         return off_law(run)
-    if quantity == "off_theory":  # over the bound
-        s, (t, v) = setting(run.scene), fall(run)
-        expected, u = settled(s, tuple(t))
-        return float(np.max(np.abs(v - expected) / np.maximum(SHARE * u, FLOOR * terminal_speed(s))))
+    if quantity == "off_theory":
+        return off_theory(run)
+    if quantity == "law_met":
+        return MOST / off_law(run)
+    if quantity == "theory_met":
+        return 1.0 / off_theory(run)
+    if quantity == "edge":
+        return edge(run)
+    if quantity == "edge_ratio":
+        return edge(run) / predicted_edge(setting(run.scene), place(run), kind_of(run))
     return NotImplemented
 
 
@@ -99,7 +169,37 @@ def reference(quantity, scene, t):
 
 
 def done(runs):
-    return [run for run in runs if not run.failure]
+    return [run for run in runs if not run.failure and not run.variant.startswith("edge")]
+
+
+def edges(runs):
+    return [run for run in runs if run.variant.startswith("edge") and getattr(run, "stable", None) and getattr(run, "unstable", None)]
+
+
+def edge_figure(runs):
+    """Narrowest width that keeps the bound, over h/d: bisected, and predicted."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+    axes = figure.subplots()
+    ratios = (1.5, 2.0, 2.5, 3.0, 4.0, 5.0)
+    for kind, (name, colour) in enumerate((("corrected, within 0.5 % of the law", "C0"), ("plain, on the theory without a lattice", "C1"))):
+        chosen = [run for run in edges(runs) if kind_of(run) == kind]
+        seen = []
+        for run in chosen:
+            s = setting(run.scene)
+            seen.append((s.h / s.d, predicted_edge(s, place(run), kind)))
+            axes.plot([s.h / s.d] * 2, [run.stable, run.unstable], "-", color=colour, lw=3, alpha=0.5)
+            axes.plot(s.h / s.d, edge(run), "o", color=colour, ms=4, label=name if run is chosen[0] else None)
+        if seen:
+            axes.plot(*zip(*sorted(seen)), "k--" if kind == 0 else "k:", lw=1, label="predicted, (3) to (5)")
+    axes.axhline(1.0 / SMOOTHING, color="0.6", lw=0.8)
+    axes.annotate("one spacing", (ratios[0], 1.0 / SMOOTHING), fontsize="x-small", va="bottom")
+    axes.axhline(1.0, color="0.6", lw=0.8, ls="--")
+    axes.annotate("as published, and plumb_grains", (ratios[0], 1.0), fontsize="x-small", va="bottom")
+    axes.set(xlabel="h/d", ylabel="kernel width of the coupling over h", ylim=(0.5, 1.15), xlim=(1.4, 4.6))
+    axes.legend(fontsize="x-small")
+    return figure
 
 
 def table(runs):
@@ -116,7 +216,7 @@ def table(runs):
 def figures(runs):
     from matplotlib.figure import Figure
 
-    runs = done(runs)
+    every, runs = runs, done(runs)
     figure = Figure(figsize=(10.0, 4.2), layout="constrained")
     left, right = figure.subplots(1, 2)
     widths = np.geomspace(0.4, 2.2, 10)
@@ -142,4 +242,7 @@ def figures(runs):
               yscale="log", ylim=(0.01, 30.0))
     for axes in (left, right):
         axes.legend(fontsize="small")
-    return [("map", figure, "Error of a lone grain's speed over the width of the coupling's kernel.")]
+    found = [("map", figure, "Error of a lone grain's speed over the width of the coupling's kernel.")]
+    if edges(every):
+        found.append(("edges", edge_figure(every), "Narrowest kernel that keeps the bound: between the ends of each bar, bisected; lines: linear theory on the lattice."))
+    return found
