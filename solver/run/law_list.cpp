@@ -5,7 +5,7 @@
 #include "dem/arrange.hpp"
 #include "run/probes.hpp"
 #include "sph/arrange_fluid.hpp"
-#include "sph/initial_fields.hpp"
+#include "core/initial_fields.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -3,7 +3,7 @@
 #include "schemes/simulation.hpp"
 #include "schemes/sph_scene.hpp"
 #include "sph/arrange_fluid.hpp"
-#include "sph/initial_fields.hpp"
+#include "core/initial_fields.hpp"
 
 #include "sph_scene_fixtures.hpp"
 

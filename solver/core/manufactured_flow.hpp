@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/table.hpp"
-#include "sph/flow_state.hpp"
+#include "core/flow_state.hpp"
 
 namespace plumb {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/vec.hpp"
-#include "sph/equation_of_state.hpp"
+#include "core/equation_of_state.hpp"
 
 namespace plumb {
 
