@@ -21,7 +21,7 @@
 namespace plumb {
 
 /// What the fluid meets on a side of the box.
-struct Side {
+struct GridSide {
     enum class Kind { periodic, no_slip, free_slip, inflow, outflow };
     Kind kind = Kind::periodic;
     Vec3 velocity = Vec3::Zero(); // of a wall, along itself [m/s]
@@ -33,7 +33,7 @@ using Velocity = std::array<Field<double>, 3>; // by face of each axis [m/s]
 struct GridFluid {
     Grid grid;
     Domain domain;
-    std::array<std::array<Side, 2>, 3> sides{}; // at the lower and the upper end of each axis
+    std::array<std::array<GridSide, 2>, 3> sides{}; // at the lower and the upper end of each axis
     Apertures open;
 
     double density = 0.0, viscosity = 0.0; // [kg/m3], dynamic [Pa s]
@@ -53,7 +53,8 @@ struct GridFluid {
     std::array<int, 3> unknowns{};
     int unknown_pressures = 0;
 
-    std::int64_t iterations = 0; // of the linear solver, over all steps
+    std::int64_t iterations = 0;    // of the linear solver, over all steps
+    double greatest_residual = 0.0; // left by it in any step
 
     std::size_t dimensions() const { return static_cast<std::size_t>(grid.dimensions); }
 };

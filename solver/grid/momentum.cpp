@@ -144,9 +144,9 @@ private:
     }
 
     void at_side(const Place& p, std::size_t d, int way, double friction, Row& row) const {
-        const Side& side = f.sides[d][static_cast<std::size_t>(way)];
-        if (side.kind == Side::Kind::no_slip) row.couple(-1, friction, side.velocity[static_cast<Eigen::Index>(c)]);
-        if (side.kind == Side::Kind::inflow) { // comes in without a velocity along the side
+        const GridSide& side = f.sides[d][static_cast<std::size_t>(way)];
+        if (side.kind == GridSide::Kind::no_slip) row.couple(-1, friction, side.velocity[static_cast<Eigen::Index>(c)]);
+        if (side.kind == GridSide::Kind::inflow) { // comes in without a velocity along the side
             row.couple(-1, friction, 0.0);
             row.couple(-1, std::max(-outward_flux(p, d, way), 0.0), 0.0);
         }

@@ -44,7 +44,7 @@ SaddleSystem saddle_system(const GridFluid& f, const Velocity& carrier, double p
         s.divergence[c] = divergence_rows(f, c);
         momentum += s.momentum[c].matrix.diagonal().squaredNorm();
         mass += s.divergence[c].squaredNorm();
-        for (const Side& side : f.sides[c]) s.closed &= side.kind != Side::Kind::outflow;
+        for (const GridSide& side : f.sides[c]) s.closed &= side.kind != GridSide::Kind::outflow;
     }
     s.pressure_scale = std::sqrt(momentum / mass);
     for (std::size_t c = 0; c < s.dimensions; ++c) {

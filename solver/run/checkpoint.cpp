@@ -94,6 +94,25 @@ template <class Boundary, class Visit> void for_each_boundary_field(Boundary& b,
     visit("sph/boundary/rho", b.rho);
 }
 
+/// Calls visit(name, field) for the state of the fluid on a grid.
+template <class Fluid, class Visit> void for_each_grid_field(Fluid& f, Visit&& visit) {
+    for (std::size_t c = 0; c < f.dimensions(); ++c) {
+        visit(fmt::format("grid/u_{}", axis_names[c]), f.u[c]);
+        if (!f.u_before[0].empty()) visit(fmt::format("grid/u_before_{}", axis_names[c]), f.u_before[c]);
+    }
+    visit("grid/p", f.p);
+    visit("grid/eps", f.eps);
+}
+
+void write_grid(Hdf5Writer& file, const GridFluid& f) {
+    for_each_grid_field(f, [&](const std::string& name, const Field<double>& field) {
+        file.write(name, std::span<const double>(field), {field.size()});
+    });
+    file.write("grid/two_steps", std::vector<std::int64_t>{f.u_before[0].empty() ? 0 : 1});
+    file.write("grid/iterations", std::vector<std::int64_t>{f.iterations});
+    file.write("grid/residual", std::vector<double>{f.greatest_residual});
+}
+
 void write_sph(Hdf5Writer& file, const SphFluid& f) {
     const std::vector<std::int32_t> slot = ordered_slots(f);
     for_each_fluid_field(f, [&](const std::string& name, const Field<double>& field) {
@@ -184,6 +203,7 @@ private:
     void load_fluid(FluidOnGrains& fluid, std::size_t n) const;
     void load_boundary(BoundaryParticles& boundary, int dimensions) const;
     void load_sph(SphFluid& fluid) const;
+    void load_grid(GridFluid& fluid) const;
     void load_coupling(Coupling& coupling, const SphFluid& fluid) const;
     void load_outputs(Run& run, const nlohmann::json& saved) const;
 
@@ -296,6 +316,16 @@ void Loader::load_sph(SphFluid& f) const {
     restore_lists(f);
 }
 
+void Loader::load_grid(GridFluid& f) const {
+    if (file_.integers("grid/two_steps").at(0) != 0) f.u_before = f.u;
+    for_each_grid_field(f, [&](const std::string& name, Field<double>& field) {
+        const std::vector<double> values = doubles(name, field.size());
+        field.assign(values.begin(), values.end());
+    });
+    f.iterations = integers("grid/iterations", 1)[0];
+    f.greatest_residual = doubles("grid/residual", 1)[0];
+}
+
 void Loader::load_coupling(Coupling& coupling, const SphFluid& fluid) const {
     read_field("coupling/x_listed", coupling.places.x, coupling.places.size());
     const std::vector<std::int64_t> counts = integers("coupling/counts", 2);
@@ -345,6 +375,7 @@ Run Loader::load() {
     system.time = static_cast<double>(system.step) * dt;
     system.listed_time = file_.number("/", "listed_time");
     if (run.simulation.sph) load_sph(*run.simulation.sph);
+    if (run.simulation.grid) load_grid(*run.simulation.grid);
     if (!run.simulation.sph || run.simulation.coupling) load_grains(system);
     if (run.simulation.coupling) load_coupling(*run.simulation.coupling, *run.simulation.sph);
     if (run.simulation.fluid) load_fluid(*run.simulation.fluid, system.grains.size());
@@ -372,6 +403,7 @@ void save_checkpoint(const std::string& path, const Run& run, const Cost& cost) 
         file.write(fmt::format("injectors/{}", q), system.injected[q].count);
     if (run.simulation.fluid) write_fluid(file, *run.simulation.fluid);
     if (run.simulation.sph) write_sph(file, *run.simulation.sph);
+    if (run.simulation.grid) write_grid(file, *run.simulation.grid);
     if (run.simulation.coupling) {
         write_field(file, "coupling/x_listed", run.simulation.coupling->weights.x_listed);
         file.write("coupling/counts",

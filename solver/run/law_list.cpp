@@ -20,6 +20,7 @@ std::vector<LawFamily> law_families() {
                                     {"fluid.viscous_term", law_entries<ViscousTerm>()},
                                     {"fluid.source", law_entries<Source>()},
                                     {"fluid.initial", law_entries<InitialField>()},
+                                    {"fluid.advection (grid)", law_entries<Advection>()},
                                     {"fluid.fill", law_entries<Fill>()},
                                     {"grains.diameter", law_entries<DiameterLaw>()},
                                     {"grains.velocity", law_entries<VelocityLaw>()},

@@ -4,6 +4,7 @@
 #include "core/parallel.hpp"
 #include "grid/saddle_solver.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace plumb {
@@ -62,6 +63,7 @@ void advance_grid(GridFluid& f, double dt, std::int64_t step) {
         if (f.unknown_pressure[k] >= 0) x[at.begin[3] + f.unknown_pressure[k]] = f.p[k] / s.pressure_scale;
     const SolveReport report = solve(s, ProjectionPreconditioner(s), right, f.residual, most_iterations, x);
     f.iterations += report.iterations;
+    f.greatest_residual = std::max(f.greatest_residual, report.residual);
     const double time = dt * static_cast<double>(step);
     if (!(report.residual <= 2.0 * f.residual))
         throw Diverged(step, time, "residual of the fluid's equations", 0, report.residual,

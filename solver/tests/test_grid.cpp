@@ -21,7 +21,7 @@ GridFluid box(int nx, int ny, double lx, double ly, bool periodic_x, bool period
     f.density = 1.0;
     f.viscosity = 0.01;
     for (std::size_t c = 0; c < 2; ++c)
-        if (!f.grid.axis[c].periodic) f.sides[c][0].kind = f.sides[c][1].kind = Side::Kind::no_slip;
+        if (!f.grid.axis[c].periodic) f.sides[c][0].kind = f.sides[c][1].kind = GridSide::Kind::no_slip;
     return f;
 }
 
