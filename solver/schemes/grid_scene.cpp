@@ -40,11 +40,15 @@ GridSide& name_side(GridFluid& f, std::vector<std::string>& named, const SideNum
     return f.sides[number.axis][number.end];
 }
 
+/// One spacing, or one along each axis [m].
 void read_axes(Table& table, GridFluid& f) {
-    const double spacing = table.number("spacing", positive);
+    const bool alike = table.type("spacing") != toml::node_type::array;
+    const Vec3 spacing = alike ? Vec3::Constant(table.number("spacing", positive))
+                               : table.components("spacing", f.grid.dimensions, positive);
     double count = 1.0;
     for (std::size_t c = 0; c < f.dimensions(); ++c) {
-        const double length = f.domain.size[static_cast<Eigen::Index>(c)], cells = length / spacing;
+        const auto k = static_cast<Eigen::Index>(c);
+        const double length = f.domain.size[k], cells = length / spacing[k];
         count *= cells;
         if (std::abs(cells - std::nearbyint(cells)) > 1e-6 * cells || cells < 0.5 || count > 1e8)
             table.fail("spacing", fmt::format("the box measures {:.9g} spacings along {}; a whole number is needed, and "
