@@ -1,8 +1,8 @@
 // What initial fields and sources are told about the fluid, and what they answer.
 #pragma once
 
-#include "core/vec.hpp"
 #include "core/equation_of_state.hpp"
+#include "core/vec.hpp"
 
 namespace plumb {
 

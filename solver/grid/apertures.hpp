@@ -1,8 +1,8 @@
 // What immersed walls leave of the grid: the open shares of faces and cells, in the plane.
 //
-// A cell that a wall cuts is a polygon between the points in which the wall crosses the grid's lines. Volumes and fluxes
-// are those of the polygon, velocities the means over the open parts of the faces (Cheny & Botella 2010, J. Comput.
-// Phys. 229, 1043, place them so too).
+// A cell that a wall cuts is a polygon between the points in which the wall crosses the grid's lines. Volumes and
+// fluxes are those of the polygon, velocities the means over the open parts of the faces (Cheny & Botella 2010, J.
+// Comput. Phys. 229, 1043, place them so too).
 #pragma once
 
 #include "core/field.hpp"
@@ -20,8 +20,8 @@ struct Apertures {
 
     bool corner_open(const Grid& grid, int node_x, int node_y) const {
         return corner.empty() ||
-               corner[static_cast<std::size_t>(node_x) +
-                      static_cast<std::size_t>(node_y) * grid.axis[0].node.size()] != 0;
+               corner[static_cast<std::size_t>(node_x) + static_cast<std::size_t>(node_y) * grid.axis[0].node.size()] !=
+                   0;
     }
 };
 

@@ -79,9 +79,7 @@ struct Grid {
         block.n[c] = axis[c].faces();
         return block;
     }
-    double cell_volume(const Place& p) const {
-        return axis[0].width(p[0]) * axis[1].width(p[1]) * axis[2].width(p[2]);
-    }
+    double cell_volume(const Place& p) const { return axis[0].width(p[0]) * axis[1].width(p[1]) * axis[2].width(p[2]); }
     /// Of the whole face, open or not [m2].
     double face_area(std::size_t c, const Place& p) const {
         double area = 1.0;

@@ -9,7 +9,8 @@ bool prescribed(const GridFluid& f, std::size_t c, const Place& p) {
     const Axis& axis = f.grid.axis[c];
     if (axis.periodic) return false;
     const bool lower = p[c] == 0, upper = p[c] == axis.cells();
-    return (lower && f.sides[c][0].kind != GridSide::Kind::outflow) || (upper && f.sides[c][1].kind != GridSide::Kind::outflow);
+    return (lower && f.sides[c][0].kind != GridSide::Kind::outflow) ||
+           (upper && f.sides[c][1].kind != GridSide::Kind::outflow);
 }
 
 } // namespace

@@ -39,13 +39,13 @@ struct GridFluid {
     double density = 0.0, viscosity = 0.0; // [kg/m3], dynamic [Pa s]
     Vec3 body_force = Vec3::Zero();        // [m/s2]
     Advection advection = NoAdvection{};
-    bool second_order = true;  // in time: backward differences over two steps, else over one
-    double residual = 1e-8;    // of the momentum and mass equations, relative to what drives the step
+    bool second_order = true; // in time: backward differences over two steps, else over one
+    double residual = 1e-8;   // of the momentum and mass equations, relative to what drives the step
 
-    Velocity u;                // unknown or, on sides that prescribe it, given
-    Velocity u_before;         // a step before, empty before the second step
-    Field<double> p;           // by cell [Pa]
-    Field<double> eps;         // by cell
+    Velocity u;        // unknown or, on sides that prescribe it, given
+    Velocity u_before; // a step before, empty before the second step
+    Field<double> p;   // by cell [Pa]
+    Field<double> eps; // by cell
 
     // which faces and cells are solved for: their number, by face and cell, -1 where they are not
     std::array<std::vector<int>, 3> unknown;

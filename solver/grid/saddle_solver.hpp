@@ -19,8 +19,8 @@ struct SaddleSystem {
     std::array<RowMatrix, 3> divergence, gradient; // D and its transpose, by component
     Eigen::VectorXd known_divergence;              // weighed like the rows of mass
     std::size_t dimensions = 2;
-    double pressure_scale = 1.0;                   // [kg/(m2 s)]
-    bool closed = false; // no outflow: the mean pressure is arbitrary
+    double pressure_scale = 1.0; // [kg/(m2 s)]
+    bool closed = false;         // no outflow: the mean pressure is arbitrary
 };
 
 /// The system of the present boundaries, apertures and porosity, with `carrier` the velocities that carry momentum and

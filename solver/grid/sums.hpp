@@ -19,7 +19,8 @@ template <class Term> double volume_mean(const GridFluid& f, std::size_t c, Term
         });
     };
     const double volume = over_faces([](std::size_t /*k*/, const Place& /*p*/) { return 1.0; });
-    return over_faces([&](std::size_t k, const Place& p) { return term(f.u[c][k], f.grid.face_centre(c, p)); }) / volume;
+    return over_faces([&](std::size_t k, const Place& p) { return term(f.u[c][k], f.grid.face_centre(c, p)); }) /
+           volume;
 }
 
 /// Velocity in the middle of a cell: of a cubic through four faces where they and the cells between them are open, else

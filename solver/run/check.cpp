@@ -168,12 +168,9 @@ Json grid_part(const Simulation& s) {
     for (const auto& ends : f.sides)
         for (const GridSide& side : ends) fastest = std::max(fastest, side.velocity.norm());
     const double nu = f.viscosity / f.density;
-    return {{"cells", f.unknown_pressures},
-            {"dimensions", f.grid.dimensions},
-            {"advection", law_name(f.advection)},
-            {"speed", fastest},
-            {"Re_per_m", fastest / nu},
-            {"cell_Re", fastest * widest / nu}};
+    return {{"cells", f.unknown_pressures},       {"dimensions", f.grid.dimensions},
+            {"advection", law_name(f.advection)}, {"speed", fastest},
+            {"Re_per_m", fastest / nu},           {"cell_Re", fastest * widest / nu}};
 }
 
 /// The factors of a plane problem take some n log n numbers; in space, n^(4/3).

@@ -1,6 +1,7 @@
 #include "run/checkpoint.hpp"
 
 #include "core/errors.hpp"
+#include "run/checkpoint_fields.hpp"
 #include "run/hdf5_file.hpp"
 
 #include <fmt/format.h>
@@ -59,49 +60,6 @@ void write_fluid(Hdf5Writer& file, const FluidOnGrains& fluid) {
     file.write("fluid/re_range", std::vector<double>{fluid.range_use.re_min, fluid.range_use.re_max});
     file.write("fluid/range_use",
                std::vector<std::int64_t>{fluid.range_use.inside, fluid.range_use.outside, fluid.range_use.dry});
-}
-
-/// Fields of the smoothed particles in the order of ids; `visit` takes a name and the field.
-template <class Fluid, class Visit> void for_each_fluid_field(Fluid& f, Visit&& visit) {
-    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {
-        visit(fmt::format("sph/x_{}", axis_names[c]), f.x[c]);
-        visit(fmt::format("sph/v_{}", axis_names[c]), f.v[c]);
-        visit(fmt::format("sph/a_{}", axis_names[c]), f.a[c]);
-        visit(fmt::format("sph/x_listed_{}", axis_names[c]), f.x_listed[c]);
-    }
-    visit("sph/rho", f.rho);
-    visit("sph/drho", f.drho);
-    if (!f.lengths.omega.empty()) visit("sph/omega", f.lengths.omega);
-    if (f.among_grains()) visit("sph/share", f.share);
-    if (f.memory == 0.0) return;
-    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
-        visit(fmt::format("sph/a_before_{}", axis_names[c]), f.a_before[c]);
-    visit("sph/drho_before", f.drho_before);
-}
-
-/// Fields of the boundary particles.
-template <class Boundary, class Visit> void for_each_boundary_field(Boundary& b, int dimensions, Visit&& visit) {
-    for (std::size_t c = 0; c < static_cast<std::size_t>(dimensions); ++c) {
-        visit(fmt::format("sph/boundary/x_{}", axis_names[c]), b.x[c]);
-        visit(fmt::format("sph/boundary/mirror_{}", axis_names[c]), b.mirror[c]);
-        visit(fmt::format("sph/boundary/velocity_{}", axis_names[c]), b.velocity[c]);
-        visit(fmt::format("sph/boundary/mirror_velocity_{}", axis_names[c]), b.mirror_velocity[c]);
-        visit(fmt::format("sph/boundary/x_listed_{}", axis_names[c]), b.x_listed[c]);
-        visit(fmt::format("sph/boundary/mirror_listed_{}", axis_names[c]), b.mirror_listed[c]);
-    }
-    visit("sph/boundary/mean_speed", b.mean_speed);
-    visit("sph/boundary/mean_pressure", b.mean_pressure);
-    visit("sph/boundary/rho", b.rho);
-}
-
-/// Calls visit(name, field) for the state of the fluid on a grid.
-template <class Fluid, class Visit> void for_each_grid_field(Fluid& f, Visit&& visit) {
-    for (std::size_t c = 0; c < f.dimensions(); ++c) {
-        visit(fmt::format("grid/u_{}", axis_names[c]), f.u[c]);
-        if (!f.u_before[0].empty()) visit(fmt::format("grid/u_before_{}", axis_names[c]), f.u_before[c]);
-    }
-    visit("grid/p", f.p);
-    visit("grid/eps", f.eps);
 }
 
 void write_grid(Hdf5Writer& file, const GridFluid& f) {

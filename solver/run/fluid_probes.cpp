@@ -78,8 +78,7 @@ FluidVelocityWave::FluidVelocityWave(Table& table)
       waves(static_cast<double>(table.integer("waves", 1, 1000))),
       sine(table.choice("shape", {"sin", "cos"}) == "sin") {}
 double FluidVelocityWave::operator()(const Sample& s) const {
-    const double k =
-        2.0 * std::numbers::pi * waves / s.simulation.grains.domain.size[static_cast<Eigen::Index>(along)];
+    const double k = 2.0 * std::numbers::pi * waves / s.simulation.grains.domain.size[static_cast<Eigen::Index>(along)];
     return 2.0 * fluid_mean(s.simulation, axis, along,
                             [&](double u, double x) { return u * (sine ? std::sin(k * x) : std::cos(k * x)); });
 }

@@ -1,11 +1,11 @@
 #include "run/law_list.hpp"
 
+#include "core/initial_fields.hpp"
 #include "coupling/self_disturbance.hpp"
 #include "coupling/suspension_viscosity.hpp"
 #include "dem/arrange.hpp"
 #include "run/probes.hpp"
 #include "sph/arrange_fluid.hpp"
-#include "core/initial_fields.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

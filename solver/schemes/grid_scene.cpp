@@ -31,7 +31,7 @@ std::optional<SideNumber> side_of_plane(const Domain& domain, const Vec3& point,
 
 /// A side that the scene has named.
 GridSide& name_side(GridFluid& f, std::vector<std::string>& named, const SideNumber& number, const Table& table,
-                const std::string& name) {
+                    const std::string& name) {
     const std::string side = fmt::format("{} end of {}", number.end == 0 ? "lower" : "upper", axis_names[number.axis]);
     if (f.domain.periodic[number.axis]) table.fail("point", fmt::format("lies on the {}, which is periodic", side));
     std::string& owner = named[2 * number.axis + number.end];
@@ -51,9 +51,10 @@ void read_axes(Table& table, GridFluid& f) {
         const double length = f.domain.size[k], cells = length / spacing[k];
         count *= cells;
         if (std::abs(cells - std::nearbyint(cells)) > 1e-6 * cells || cells < 0.5 || count > 1e8)
-            table.fail("spacing", fmt::format("the box measures {:.9g} spacings along {}; a whole number is needed, and "
-                                              "no more than 1e8 cells in all",
-                                              cells, axis_names[c]));
+            table.fail("spacing",
+                       fmt::format("the box measures {:.9g} spacings along {}; a whole number is needed, and "
+                                   "no more than 1e8 cells in all",
+                                   cells, axis_names[c]));
         f.grid.axis[c] = even_axis(length, static_cast<int>(std::lround(cells)), f.domain.periodic[c]);
     }
     if (f.grid.dimensions == 2) f.grid.axis[2] = even_axis(1.0, 1, false);
@@ -92,13 +93,14 @@ void read_walls(Table& fluid, GridFluid& f, const std::vector<FluidWall>& walls,
             side.kind = wall.slips ? GridSide::Kind::free_slip : GridSide::Kind::no_slip;
             side.velocity = wall.body.velocity;
             if (wall.body.velocity.dot(plane->normal) != 0.0)
-                fluid.fail("method", fmt::format("\"grid\" has no walls that leave their place: \"{}\"", wall.body.name));
+                fluid.fail("method",
+                           fmt::format("\"grid\" has no walls that leave their place: \"{}\"", wall.body.name));
             continue;
         }
         if (f.grid.dimensions == 3) fluid.fail("method", "\"grid\" has immersed walls in the plane only");
         if (wall.slips || wall.body.velocity.norm() > 0.0)
-            fluid.fail("method", fmt::format("\"grid\" has immersed walls that stick and rest only: \"{}\"",
-                                             wall.body.name));
+            fluid.fail("method",
+                       fmt::format("\"grid\" has immersed walls that stick and rest only: \"{}\"", wall.body.name));
         immersed.push_back(wall.body);
     }
     f.open = immersed.empty() ? open_grid(f.grid)
@@ -156,8 +158,7 @@ void set_initial_state(Table& table, GridFluid& f) {
     };
     for (std::size_t c = 0; c < f.dimensions(); ++c)
         for_each_place(f.grid.faces(c), [&](const Place& p, std::size_t k) {
-            if (f.unknown[c][k] >= 0)
-                f.u[c][k] = state(f.grid.face_centre(c, p)).u[static_cast<Eigen::Index>(c)];
+            if (f.unknown[c][k] >= 0) f.u[c][k] = state(f.grid.face_centre(c, p)).u[static_cast<Eigen::Index>(c)];
         });
     for_each_place(f.grid.cells(), [&](const Place& p, std::size_t k) { f.p[k] = state(f.grid.centre(p)).p; });
 }

@@ -2,8 +2,8 @@
 // from that of the fluid at a mirror point inside it.
 #pragma once
 
-#include "core/vec.hpp"
 #include "core/fluid_wall.hpp"
+#include "core/vec.hpp"
 #include "sph/clusters.hpp"
 
 #include <cstdint>

@@ -62,7 +62,6 @@ TEST(Grid, TaylorGreenVortexIsOfSecondOrder) {
         errors.push_back(error(f, 0, [&](const Vec3& x) { return decay * u(x); }));
         EXPECT_NEAR(errors.back(), error(f, 1, [&](const Vec3& x) { return decay * v(x); }), 1e-6);
         EXPECT_LT(static_cast<double>(f.iterations) / steps, 30.0);
-        std::printf("n %d error %.3e iterations a step %.2f\n", n, errors.back(), static_cast<double>(f.iterations) / steps);
     }
     EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2.0, 0.2);
 }
@@ -95,7 +94,6 @@ TEST(Grid, CylinderArrayIsOfSecondOrder) {
             if (p[0] == 0) flux += f.u[0][k] * open_area(f, 0, p);
         });
         errors.push_back(1.0 / flux / 51.53 - 1.0);
-        std::printf("n %d error %.5f iterations %ld\n", n, errors.back(), static_cast<long>(f.iterations));
     }
     EXPECT_LT(std::abs(errors[1]), 0.006);
     EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2.0, 0.3);
