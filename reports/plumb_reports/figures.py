@@ -129,7 +129,7 @@ def error_pictures(judgements):
     pictures = []
     for identity, group in grouped(judgements, lambda j: j.check.id).items():
         group = [j for j in group if len(j.measurements) > 1 and j.check.metric != "value"]
-        if group:
+        if any(m.value > 0.0 for j in group for m in j.measurements):  # errors of exactly zero have no place on a logarithmic axis
             caption = (f"Check {identity}: error against {group[0].runs[-1].parameter} (left) and wall time of the run "
                        "(right). Lines are fits with their 95 % interval, open marks lie on a plateau and "
                        "are not fitted, grey lines are guide slopes, the dotted line is the bound of the finest run.")

@@ -23,6 +23,7 @@ constexpr double contact_rate = 2e7; // grain steps per second with contacts
 constexpr double fluid_rate = 2e6;   // with a fluid: drag law and step weights of every grain
 constexpr double particle_rate = 4e6, particle_rate_plane = 1e7; // particle updates of smoothed particles
 constexpr double bytes_per_particle = 450.0;
+constexpr double cell_rate = 4e4, bytes_per_cell = 3000.0, bytes_per_fill = 60.0; // of a grid in the plane, a step
 constexpr double weight_rate = 2e8, bytes_per_weight = 4.0; // of the coupling, each used three times a step
 constexpr double wake_cost = 1e-6;                          // of a grain's own wake [s]
 constexpr double step_cost = 2e-6;                          // fixed cost of a step [s]
@@ -83,7 +84,7 @@ Json step_part(const Simulation& s) {
     part["steps"] = total_steps(t);
     part["steps_per_output"] = t.steps_per_output;
     part["outputs"] = t.outputs + 1;
-    if (s.sph && !s.coupling) return part;
+    if ((s.sph && !s.coupling) || s.grid) return part;
     part["contact_law"] = std::visit([](const auto& pairs) { return law_name(ContactLaw(pairs.laws.front())); },
                                      s.grains.contact.contact);
     part["contact_times"] = contact_times_part(s.grains);
@@ -156,7 +157,36 @@ Json sph_cost_part(const Run& run) {
             {"threads", thread_count()}};
 }
 
+/// Numbers of the fluid on a grid; the speed is the greatest known before the run.
+Json grid_part(const Simulation& s) {
+    const GridFluid& f = *s.grid;
+    double fastest = 0.0, widest = 0.0;
+    for (std::size_t c = 0; c < f.dimensions(); ++c) {
+        for (const double u : f.u[c]) fastest = std::max(fastest, std::abs(u));
+        for (int k = 0; k < f.grid.axis[c].cells(); ++k) widest = std::max(widest, f.grid.axis[c].width(k));
+    }
+    for (const auto& ends : f.sides)
+        for (const GridSide& side : ends) fastest = std::max(fastest, side.velocity.norm());
+    const double nu = f.viscosity / f.density;
+    return {{"cells", f.unknown_pressures},       {"dimensions", f.grid.dimensions},
+            {"advection", law_name(f.advection)}, {"speed", fastest},
+            {"Re_per_m", fastest / nu},           {"cell_Re", fastest * widest / nu}};
+}
+
+/// The factors of a plane problem take some n log n numbers; in space, n^(4/3).
+Json grid_cost_part(const Run& run) {
+    const Simulation& s = run.simulation;
+    const double n = static_cast<double>(s.grid->unknown_pressures), steps = static_cast<double>(total_steps(s.timing));
+    const double fill = s.grid->grid.dimensions == 2 ? n * std::log2(n + 2.0) : std::pow(n, 4.0 / 3.0);
+    return {{"grain_steps", n * steps},
+            {"memory_bytes", bytes_of_program + bytes_per_cell * n + bytes_per_fill * fill},
+            {"wall_s", steps * (step_cost + n / cell_rate)},
+            {"nominal_rate", cell_rate},
+            {"threads", thread_count()}};
+}
+
 Json cost_part(const Run& run) {
+    if (run.simulation.grid) return grid_cost_part(run);
     if (run.simulation.sph) return sph_cost_part(run);
     const Simulation& s = run.simulation;
     const double n = most_grains(s), steps = static_cast<double>(total_steps(s.timing));
@@ -181,10 +211,12 @@ Json remarks_part(const std::vector<Remark>& remarks) {
 
 Json report(const Run& run) {
     Json all{{"scene", run.scene.path}, {"scene_hash", run.scene.hash}};
-    if (!run.simulation.sph || run.simulation.coupling) all["grains"] = grains_part(run.simulation);
+    const bool fluid_alone = (run.simulation.sph || run.simulation.grid) && !run.simulation.coupling;
+    if (!fluid_alone) all["grains"] = grains_part(run.simulation);
     all["time"] = step_part(run.simulation);
     if (run.simulation.fluid) all["fluid"] = fluid_part(run.simulation);
     if (run.simulation.sph) all["sph"] = sph_part(run.simulation);
+    if (run.simulation.grid) all["grid"] = grid_part(run.simulation);
     all["probes"] = run.probes.size();
     all["cost"] = cost_part(run);
     all["missing"] = remarks_part(missing_models(run.simulation));
@@ -253,6 +285,14 @@ void print_sph(const Json& part, std::string& text) {
                     number("Mach"), number("Re_per_m"), number("acoustic_Re"), number("artificial_nu"));
 }
 
+void print_grid(const Json& part, std::string& text) {
+    text += fmt::format("fluid           {} cells in {} dimensions, advection {}\n"
+                        "  at the start  speed {:.4g} m/s, Re/length {:.4g} 1/m, cell Reynolds number {:.3g}\n",
+                        part["cells"].get<std::int64_t>(), part["dimensions"].get<int>(),
+                        part["advection"].get<std::string>(), part["speed"].get<double>(),
+                        part["Re_per_m"].get<double>(), part["cell_Re"].get<double>());
+}
+
 void print_remarks(const Json& part, std::string_view title, std::string& text) {
     text += fmt::format("{:<16}{}\n", title, part.empty() ? "none" : "");
     for (const Json& r : part)
@@ -267,6 +307,7 @@ std::string check_report(const Run& run, bool json) {
     std::string text = fmt::format("scene           {} ({})\n", run.scene.path, run.scene.hash);
     if (all.contains("grains")) print_grains(all["grains"], text);
     if (all.contains("sph")) print_sph(all["sph"], text);
+    if (all.contains("grid")) print_grid(all["grid"], text);
     print_time(all["time"], text);
     if (all.contains("fluid")) print_fluid(all["fluid"], text);
     const Json& cost = all["cost"];

@@ -1,6 +1,7 @@
 #include "run/checkpoint.hpp"
 
 #include "core/errors.hpp"
+#include "run/checkpoint_fields.hpp"
 #include "run/hdf5_file.hpp"
 
 #include <fmt/format.h>
@@ -61,37 +62,13 @@ void write_fluid(Hdf5Writer& file, const FluidOnGrains& fluid) {
                std::vector<std::int64_t>{fluid.range_use.inside, fluid.range_use.outside, fluid.range_use.dry});
 }
 
-/// Fields of the smoothed particles in the order of ids; `visit` takes a name and the field.
-template <class Fluid, class Visit> void for_each_fluid_field(Fluid& f, Visit&& visit) {
-    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {
-        visit(fmt::format("sph/x_{}", axis_names[c]), f.x[c]);
-        visit(fmt::format("sph/v_{}", axis_names[c]), f.v[c]);
-        visit(fmt::format("sph/a_{}", axis_names[c]), f.a[c]);
-        visit(fmt::format("sph/x_listed_{}", axis_names[c]), f.x_listed[c]);
-    }
-    visit("sph/rho", f.rho);
-    visit("sph/drho", f.drho);
-    if (!f.lengths.omega.empty()) visit("sph/omega", f.lengths.omega);
-    if (f.among_grains()) visit("sph/share", f.share);
-    if (f.memory == 0.0) return;
-    for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
-        visit(fmt::format("sph/a_before_{}", axis_names[c]), f.a_before[c]);
-    visit("sph/drho_before", f.drho_before);
-}
-
-/// Fields of the boundary particles.
-template <class Boundary, class Visit> void for_each_boundary_field(Boundary& b, int dimensions, Visit&& visit) {
-    for (std::size_t c = 0; c < static_cast<std::size_t>(dimensions); ++c) {
-        visit(fmt::format("sph/boundary/x_{}", axis_names[c]), b.x[c]);
-        visit(fmt::format("sph/boundary/mirror_{}", axis_names[c]), b.mirror[c]);
-        visit(fmt::format("sph/boundary/velocity_{}", axis_names[c]), b.velocity[c]);
-        visit(fmt::format("sph/boundary/mirror_velocity_{}", axis_names[c]), b.mirror_velocity[c]);
-        visit(fmt::format("sph/boundary/x_listed_{}", axis_names[c]), b.x_listed[c]);
-        visit(fmt::format("sph/boundary/mirror_listed_{}", axis_names[c]), b.mirror_listed[c]);
-    }
-    visit("sph/boundary/mean_speed", b.mean_speed);
-    visit("sph/boundary/mean_pressure", b.mean_pressure);
-    visit("sph/boundary/rho", b.rho);
+void write_grid(Hdf5Writer& file, const GridFluid& f) {
+    for_each_grid_field(f, [&](const std::string& name, const Field<double>& field) {
+        file.write(name, std::span<const double>(field), {field.size()});
+    });
+    file.write("grid/two_steps", std::vector<std::int64_t>{f.u_before[0].empty() ? 0 : 1});
+    file.write("grid/iterations", std::vector<std::int64_t>{f.iterations});
+    file.write("grid/residual", std::vector<double>{f.greatest_residual});
 }
 
 void write_sph(Hdf5Writer& file, const SphFluid& f) {
@@ -184,6 +161,7 @@ private:
     void load_fluid(FluidOnGrains& fluid, std::size_t n) const;
     void load_boundary(BoundaryParticles& boundary, int dimensions) const;
     void load_sph(SphFluid& fluid) const;
+    void load_grid(GridFluid& fluid) const;
     void load_coupling(Coupling& coupling, const SphFluid& fluid) const;
     void load_outputs(Run& run, const nlohmann::json& saved) const;
 
@@ -296,6 +274,16 @@ void Loader::load_sph(SphFluid& f) const {
     restore_lists(f);
 }
 
+void Loader::load_grid(GridFluid& f) const {
+    if (file_.integers("grid/two_steps").at(0) != 0) f.u_before = f.u;
+    for_each_grid_field(f, [&](const std::string& name, Field<double>& field) {
+        const std::vector<double> values = doubles(name, field.size());
+        field.assign(values.begin(), values.end());
+    });
+    f.iterations = integers("grid/iterations", 1)[0];
+    f.greatest_residual = doubles("grid/residual", 1)[0];
+}
+
 void Loader::load_coupling(Coupling& coupling, const SphFluid& fluid) const {
     read_field("coupling/x_listed", coupling.places.x, coupling.places.size());
     const std::vector<std::int64_t> counts = integers("coupling/counts", 2);
@@ -345,6 +333,7 @@ Run Loader::load() {
     system.time = static_cast<double>(system.step) * dt;
     system.listed_time = file_.number("/", "listed_time");
     if (run.simulation.sph) load_sph(*run.simulation.sph);
+    if (run.simulation.grid) load_grid(*run.simulation.grid);
     if (!run.simulation.sph || run.simulation.coupling) load_grains(system);
     if (run.simulation.coupling) load_coupling(*run.simulation.coupling, *run.simulation.sph);
     if (run.simulation.fluid) load_fluid(*run.simulation.fluid, system.grains.size());
@@ -372,6 +361,7 @@ void save_checkpoint(const std::string& path, const Run& run, const Cost& cost) 
         file.write(fmt::format("injectors/{}", q), system.injected[q].count);
     if (run.simulation.fluid) write_fluid(file, *run.simulation.fluid);
     if (run.simulation.sph) write_sph(file, *run.simulation.sph);
+    if (run.simulation.grid) write_grid(file, *run.simulation.grid);
     if (run.simulation.coupling) {
         write_field(file, "coupling/x_listed", run.simulation.coupling->weights.x_listed);
         file.write("coupling/counts",

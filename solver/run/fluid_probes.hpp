@@ -1,4 +1,4 @@
-// Probes of the smoothed particles. Sums run in the order of ids, as those over grains.
+// Probes of a computed fluid: means over smoothed particles, in the order of ids, or over the volume of a grid.
 #pragma once
 
 #include "core/laws.hpp"
@@ -8,44 +8,44 @@
 
 namespace plumb {
 
-/// InputError for a scene without smoothed particles.
-void demand_particles(const Simulation& s, const Table& t);
+/// InputError for a scene without a fluid that is computed.
+void demand_computed_fluid(const Simulation& s, const Table& t);
 
 struct FluidKineticEnergy {
     static constexpr std::string_view name = "fluid_kinetic_energy", units = "m2/s2";
-    static constexpr LawInfo info{"1/n sum v^2/2 over the fluid's particles", "fluid.method = \"sph\"", "definition"};
+    static constexpr LawInfo info{"mean of v^2/2 over particles or volume", "sph and grid", "definition"};
     explicit FluidKineticEnergy(Table& /*table*/) {}
-    static void bind(const Simulation& s, const Table& t) { demand_particles(s, t); }
+    static void bind(const Simulation& s, const Table& t) { demand_computed_fluid(s, t); }
     double operator()(const Sample& s) const;
 };
 
 struct FluidMeanVelocity {
     static constexpr std::string_view name = "fluid_mean_velocity", units = "m/s";
-    static constexpr LawInfo info{"1/n sum v[axis]", "fluid.method = \"sph\"", "definition"};
+    static constexpr LawInfo info{"mean of v[axis] over particles or volume", "sph and grid", "definition"};
     std::size_t axis;
     explicit FluidMeanVelocity(Table& table);
-    static void bind(const Simulation& s, const Table& t) { demand_particles(s, t); }
+    static void bind(const Simulation& s, const Table& t) { demand_computed_fluid(s, t); }
     double operator()(const Sample& s) const;
 };
 
 struct FluidGreatestSpeed {
     static constexpr std::string_view name = "fluid_greatest_speed", units = "m/s";
-    static constexpr LawInfo info{"max |v|", "fluid.method = \"sph\"", "definition"};
+    static constexpr LawInfo info{"max |v|", "sph and grid", "definition"};
     explicit FluidGreatestSpeed(Table& /*table*/) {}
-    static void bind(const Simulation& s, const Table& t) { demand_particles(s, t); }
+    static void bind(const Simulation& s, const Table& t) { demand_computed_fluid(s, t); }
     double operator()(const Sample& s) const;
 };
 
 /// Amplitude of one wave in a velocity component, by projection: 2/n sum v[axis] sin(k x) or cos(k x).
 struct FluidVelocityWave {
     static constexpr std::string_view name = "fluid_velocity_wave", units = "m/s";
-    static constexpr LawInfo info{"2/n sum v[axis] sin or cos (2 pi waves x[along]/size)", "fluid.method = \"sph\"",
+    static constexpr LawInfo info{"2 times the mean of v[axis] sin or cos (2 pi waves x[along]/size)", "sph and grid",
                                   "definition"};
     std::size_t axis, along;
     double waves;
     bool sine;
     explicit FluidVelocityWave(Table& table);
-    static void bind(const Simulation& s, const Table& t) { demand_particles(s, t); }
+    static void bind(const Simulation& s, const Table& t) { demand_computed_fluid(s, t); }
     double operator()(const Sample& s) const;
 };
 

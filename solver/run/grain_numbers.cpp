@@ -172,7 +172,8 @@ std::vector<Remark> missing_models(const Simulation& simulation) {
 std::vector<Remark> idle_models(const Simulation& simulation) {
     std::vector<Remark> remarks;
     if (simulation.fluid) remark_on_idle_forces(*simulation.fluid, simulation.grains.domain, remarks);
-    if (!simulation.sph || simulation.coupling) remark_on_idle_contacts(simulation.grains, remarks);
+    const bool fluid_alone = (simulation.sph || simulation.grid) && !simulation.coupling;
+    if (!fluid_alone) remark_on_idle_contacts(simulation.grains, remarks);
     return remarks;
 }
 

@@ -1,11 +1,11 @@
 #include "run/law_list.hpp"
 
+#include "core/initial_fields.hpp"
 #include "coupling/self_disturbance.hpp"
 #include "coupling/suspension_viscosity.hpp"
 #include "dem/arrange.hpp"
 #include "run/probes.hpp"
 #include "sph/arrange_fluid.hpp"
-#include "sph/initial_fields.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -20,6 +20,7 @@ std::vector<LawFamily> law_families() {
                                     {"fluid.viscous_term", law_entries<ViscousTerm>()},
                                     {"fluid.source", law_entries<Source>()},
                                     {"fluid.initial", law_entries<InitialField>()},
+                                    {"fluid.advection (grid)", law_entries<Advection>()},
                                     {"fluid.fill", law_entries<Fill>()},
                                     {"grains.diameter", law_entries<DiameterLaw>()},
                                     {"grains.velocity", law_entries<VelocityLaw>()},

@@ -104,6 +104,14 @@ std::string provenance_json(const Scene& scene, const Simulation& simulation, co
                     {"sound_speed", f.sound_speed},
                     {"artificial_nu", artificial_nu(f)}};
     }
+    if (simulation.grid) {
+        const GridFluid& f = *simulation.grid;
+        const double steps = static_cast<double>(std::max<std::int64_t>(simulation.grains.step, 1));
+        j["grid"] = {{"cells", f.unknown_pressures},
+                     {"unknowns", f.unknowns[0] + f.unknowns[1] + f.unknowns[2] + f.unknown_pressures},
+                     {"iterations_per_step", static_cast<double>(f.iterations) / steps},
+                     {"greatest_residual", f.greatest_residual}};
+    }
     j["exit"] = exit ? nlohmann::ordered_json(*exit) : nlohmann::ordered_json(nullptr);
     // A path may be no valid UTF-8; JSON must be.
     return j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";

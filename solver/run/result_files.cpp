@@ -1,6 +1,7 @@
 #include "run/result_files.hpp"
 
 #include "core/errors.hpp"
+#include "grid/sums.hpp"
 #include "run/aside_file.hpp"
 #include "run/hdf5_file.hpp"
 
@@ -109,6 +110,42 @@ void write_fluid(Hdf5Writer& file, const SphFluid& f) {
         file.attribute("fluid/eps", "units", std::string("1"));
     }
     for (const auto& [name, units] : {std::pair{"x", "m"}, {"v", "m/s"}, {"rho", "kg/m3"}, {"p", "Pa"}, {"id", "1"}})
+        file.attribute(fmt::format("fluid/{}", name), "units", std::string(units));
+}
+
+/// Open cells as points, as smoothed particles are written, and the grid with its velocities on faces.
+void write_fluid(Hdf5Writer& file, const GridFluid& f) {
+    std::vector<double> x, v, p, rho, open;
+    std::vector<std::int32_t> id;
+    for_each_place(f.grid.cells(), [&](const Place& cell, std::size_t k) {
+        if (f.unknown_pressure[k] < 0) return;
+        const Vec3 centre = f.grid.centre(cell), velocity = centre_velocity(f, cell);
+        x.insert(x.end(), {centre[0], centre[1], centre[2]});
+        v.insert(v.end(), {velocity[0], velocity[1], velocity[2]});
+        p.push_back(f.p[k]);
+        rho.push_back(f.eps[k] * f.density);
+        open.push_back(f.open.cell[k]);
+        id.push_back(f.unknown_pressure[k]);
+    });
+    const std::size_t n = id.size();
+    file.write("fluid/x", std::span<const double>(x), {n, 3});
+    file.write("fluid/v", std::span<const double>(v), {n, 3});
+    file.write("fluid/rho", rho);
+    file.write("fluid/p", p);
+    file.write("fluid/open", open);
+    file.write("fluid/id", id);
+    for (std::size_t c = 0; c < f.dimensions(); ++c) {
+        const Block faces = f.grid.faces(c);
+        const std::string axis(1, axis_names[c]);
+        file.write("grid/nodes_" + axis, f.grid.axis[c].node);
+        file.write("grid/u_" + axis, std::span<const double>(f.u[c]),
+                   {static_cast<std::size_t>(faces.n[2]), static_cast<std::size_t>(faces.n[1]),
+                    static_cast<std::size_t>(faces.n[0])});
+        file.attribute("grid/nodes_" + axis, "units", std::string("m"));
+        file.attribute("grid/u_" + axis, "units", std::string("m/s"));
+    }
+    for (const auto& [name, units] :
+         {std::pair{"x", "m"}, {"v", "m/s"}, {"rho", "kg/m3"}, {"p", "Pa"}, {"open", "1"}, {"id", "1"}})
         file.attribute(fmt::format("fluid/{}", name), "units", std::string(units));
 }
 
@@ -238,7 +275,9 @@ void write_series(const std::string& path, const std::vector<Probe>& probes) {
 
 void write_snapshot(const std::string& path, const Simulation& simulation) {
     Hdf5Writer file(path);
-    if (simulation.grains.grains.size() > 0 || !simulation.sph) write_grains(file, simulation.grains.grains);
+    if (simulation.grains.grains.size() > 0 || !(simulation.sph || simulation.grid))
+        write_grains(file, simulation.grains.grains);
+    if (simulation.grid) write_fluid(file, *simulation.grid);
     if (simulation.sph) {
         write_fluid(file, *simulation.sph);
         write_boundary(file, *simulation.sph);

@@ -29,8 +29,14 @@ inline Run make_run(Scene scene) {
     return {std::move(scene), std::move(simulation), std::move(probes), {}, iso_time(), {}, false};
 }
 
-/// Grains and fluid particles: what a step updates.
-inline std::size_t item_count(const Simulation& s) { return s.grains.grains.size() + (s.sph ? s.sph->particles : 0); }
+/// Particles or open cells of a computed fluid.
+inline std::size_t fluid_count(const Simulation& s) {
+    if (s.grid) return static_cast<std::size_t>(s.grid->unknown_pressures);
+    return s.sph ? s.sph->particles : 0;
+}
+
+/// Grains and the fluid's particles or cells: what a step updates.
+inline std::size_t item_count(const Simulation& s) { return s.grains.grains.size() + fluid_count(s); }
 
 /// Steps of the whole run.
 inline std::int64_t total_steps(const Timing& timing) { return timing.outputs * timing.steps_per_output; }

@@ -87,8 +87,7 @@ private:
         write_snapshot(folder_.file(name), run_.simulation);
         unflushed_.push_back(name);
         run_.snapshots.push_back({name, static_cast<double>(run_.simulation.grains.step) * run_.simulation.timing.dt,
-                                  run_.simulation.grains.grains.size(),
-                                  run_.simulation.sph ? run_.simulation.sph->particles : 0});
+                                  run_.simulation.grains.grains.size(), fluid_count(run_.simulation)});
     }
     void write_series_and_index() {
         series_.write([&] {

@@ -4,6 +4,7 @@
 #include "dem/advance_grains.hpp"
 #include "dem/arrange.hpp"
 #include "schemes/coupled_scene.hpp"
+#include "schemes/grid_scene.hpp"
 #include "schemes/sph_scene.hpp"
 
 #include <fmt/format.h>
@@ -155,11 +156,28 @@ void advance_one(Simulation& s) {
     complete_fluid_forces(*s.fluid, s.grains, dt);
 }
 
-/// True when the scene asks for smoothed particles; a [fluid] table that does not say is left to its own reader.
-bool is_sph(Table& root) {
+/// True when the scene asks for this kind of fluid; a [fluid] table that does not say is left to its own reader.
+bool is_method(Table& root, std::string_view method) {
     if (!root.has("fluid") || root.type("fluid") != toml::node_type::table) return false;
     Table fluid = root.table("fluid");
-    return fluid.has("method") && fluid.choice("method", {"prescribed", "sph"}) == "sph";
+    return fluid.has("method") && fluid.choice("method", {"prescribed", "sph", "grid"}) == method;
+}
+
+void refuse_grain_tables(const Table& root) {
+    for (const char* key : {"injector", "contact", "coupling"})
+        if (root.has(key)) root.fail(key, "there are no [grains] in this scene");
+}
+
+/// A scene of the fluid on a grid alone.
+void make_grid(Table& root, Simulation& s) {
+    if (root.has("grains")) root.fail("fluid.method", "\"grid\" knows no grains yet");
+    refuse_grain_tables(root);
+    Table fluid = root.table("fluid"), time = root.table("time");
+    std::vector<Table> wall_tables = root.tables("wall"), inlets = root.tables("inlet"),
+                       outlets = root.tables("outlet");
+    s.grid = read_grid_fluid(fluid, s.grains.domain, read_fluid_walls(wall_tables, s.grains.domain), inlets, outlets);
+    s.grid->second_order = time.choice("integrator", {"implicit_euler", "bdf2"}) == "bdf2";
+    s.timing = timing(time, grid_limits(*s.grid), probe_intervals(root));
 }
 
 /// Smoothed particles, without what grains there may be.
@@ -176,8 +194,7 @@ void make_sph(Table& root, Simulation& s) {
 
 /// A scene of smoothed particles alone.
 void make_sph_alone(Table& root, Simulation& s) {
-    for (const char* key : {"injector", "contact", "coupling"})
-        if (root.has(key)) root.fail(key, "there are no [grains] in this scene");
+    refuse_grain_tables(root);
     make_sph(root, s);
     Table time = root.table("time");
     s.timing = timing(time, fluid_limits(*s.sph), probe_intervals(root));
@@ -213,7 +230,11 @@ Simulation make_simulation(Scene& scene) {
     Table& root = scene.root;
     Simulation s;
     s.grains.domain = read_domain(root.table("domain"));
-    if (is_sph(root)) {
+    if (is_method(root, "grid")) {
+        make_grid(root, s);
+        return s;
+    }
+    if (is_method(root, "sph")) {
         root.has("grains") ? make_coupled(root, s) : make_sph_alone(root, s);
         return s;
     }
@@ -247,10 +268,13 @@ void advance(Simulation& simulation, std::int64_t steps) {
                                 simulation.timing.dt, simulation.grains.step + 1);
             return;
         }
-        if (simulation.sph) {
+        if (simulation.sph || simulation.grid) {
             GrainSystem& clock = simulation.grains;
             for (std::int64_t k = 0; k < steps; ++k) {
-                advance_fluid(*simulation.sph, simulation.timing.dt, clock.step + 1);
+                if (simulation.grid)
+                    advance_grid(*simulation.grid, simulation.timing.dt, clock.step + 1);
+                else
+                    advance_fluid(*simulation.sph, simulation.timing.dt, clock.step + 1);
                 ++clock.step;
                 clock.time = simulation.timing.dt * static_cast<double>(clock.step);
             }

@@ -5,6 +5,7 @@
 #include "dem/grain_system.hpp"
 #include "schemes/advance_coupled.hpp"
 #include "schemes/advance_fluid.hpp"
+#include "schemes/advance_grid.hpp"
 #include "schemes/fluid_on_grains.hpp"
 #include "schemes/stable_step.hpp"
 
@@ -17,7 +18,8 @@ struct Simulation {
     GrainSystem grains;
     std::optional<FluidOnGrains> fluid; // what grains feel of a fluid, if there is one
     std::optional<SphFluid> sph;        // fluid.method = "sph"
-    std::optional<Coupling> coupling;   // of the latter and grains
+    std::optional<GridFluid> grid;      // fluid.method = "grid"
+    std::optional<Coupling> coupling;   // of smoothed particles and grains
     Timing timing;                      // steps, outputs and limits, fixed for the whole run
 };
 

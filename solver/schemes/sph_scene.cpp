@@ -1,7 +1,7 @@
 #include "schemes/sph_scene.hpp"
 
+#include "core/initial_fields.hpp"
 #include "sph/arrange_fluid.hpp"
-#include "sph/initial_fields.hpp"
 #include "sph/lattice_rates.hpp"
 #include "sph/vector_at.hpp"
 

@@ -2,8 +2,8 @@
 // from that of the fluid at a mirror point inside it.
 #pragma once
 
+#include "core/fluid_wall.hpp"
 #include "core/vec.hpp"
-#include "core/walls.hpp"
 #include "sph/clusters.hpp"
 
 #include <cstdint>
@@ -17,13 +17,6 @@ namespace plumb {
 struct Continuation {
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     Vec3 offset = Vec3::Zero(); // [m/s]
-};
-
-/// A wall as the fluid meets it.
-struct FluidWall {
-    WallBody body;
-    bool slips = false;           // free slip; otherwise the fluid sticks
-    bool fluid_is_inside = false; // of a closed mesh; other shapes know their side
 };
 
 struct BoundaryParticles {

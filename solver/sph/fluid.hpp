@@ -2,11 +2,11 @@
 #pragma once
 
 #include "core/domain.hpp"
+#include "core/equation_of_state.hpp"
 #include "core/field.hpp"
 #include "sph/boundary.hpp"
 #include "sph/clusters.hpp"
 #include "sph/corrected_operators.hpp"
-#include "sph/equation_of_state.hpp"
 #include "sph/kernels.hpp"
 #include "sph/open_boundaries.hpp"
 #include "sph/pair_terms.hpp"

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/laws.hpp"
-#include "sph/manufactured_flow.hpp"
+#include "core/manufactured_flow.hpp"
 
 #include <variant>
 

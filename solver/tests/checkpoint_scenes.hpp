@@ -247,4 +247,59 @@ quantity = "grain_mean_velocity"
 axis = "z"
 )";
 
+/// Flow around a cylinder on a grid, from inlet to outlet: two steps are remembered.
+inline constexpr const char* on_grid = R"(
+[domain]
+size = [2.0, 1.0]
+periodic = [false, false]
+gravity = [0.0, 0.0]
+[fluid]
+method = "grid"
+density = 1.0
+viscosity = 0.02
+spacing = 0.0625
+advection = "central"
+residual = 1e-8
+pressure = "dynamic"
+initial = {law = "uniform", velocity = [1.0, 0.0]}
+[[inlet]]
+name = "in"
+point = [0.0, 0.5]
+normal = [1.0, 0.0]
+profile = {law = "parabolic", mean_speed = 1.0, radius = 0.5}
+[[outlet]]
+name = "out"
+point = [2.0, 0.5]
+normal = [-1.0, 0.0]
+pressure = 3.0
+[[wall]]
+name = "floor"
+shape = "plane"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+slip = "no_slip"
+[[wall]]
+name = "roof"
+shape = "plane"
+point = [0.0, 1.0]
+normal = [0.0, -1.0]
+slip = "no_slip"
+[[wall]]
+name = "cylinder"
+shape = "cylinder"
+point = [0.7, 0.45]
+radius = 0.2
+side = "outside"
+slip = "no_slip"
+[time]
+end = 0.5
+output_interval = 0.05
+integrator = "bdf2"
+step = "auto"
+snapshots = true
+[[probe]]
+name = "energy"
+quantity = "fluid_kinetic_energy"
+)";
+
 } // namespace plumb::fixture::checkpoint_scenes

@@ -109,7 +109,7 @@ TEST_P(Checkpoint, RunsAreTheSameForAnyNumberOfThreads) {
     EXPECT_TRUE(found.same) << found.text;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint, testing::Values(dry, wet, flowing, passing, published));
+INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint, testing::Values(dry, wet, flowing, passing, published, on_grid));
 
 std::string complaint(const std::string& path) {
     try {

@@ -1,5 +1,5 @@
 // Equations of state: each is its own inverse's inverse and has the speed of sound it is given.
-#include "sph/equation_of_state.hpp"
+#include "core/equation_of_state.hpp"
 
 #include "fluid_fixtures.hpp"
 

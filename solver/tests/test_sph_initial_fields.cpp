@@ -1,5 +1,5 @@
 // Initial fields that need more than a formula's repetition; the others are in test_sph_scene.cpp.
-#include "sph/initial_fields.hpp"
+#include "core/initial_fields.hpp"
 
 #include "fluid_fixtures.hpp"
 

@@ -1,9 +1,9 @@
 // Scenes with fluid.method = "sph": what they mean, what is refused, their step limits and initial state.
+#include "core/initial_fields.hpp"
 #include "run/probes.hpp"
 #include "schemes/simulation.hpp"
 #include "schemes/sph_scene.hpp"
 #include "sph/arrange_fluid.hpp"
-#include "sph/initial_fields.hpp"
 
 #include "sph_scene_fixtures.hpp"
 
@@ -232,7 +232,7 @@ TEST(SphScene, BadFluidIsAnInputError) {
     refused({{"source", "{law = \"manufactured\", speed = 1.0}"}}, {"fluid.source.divergence: missing"});
     for (const char* key : {"source", "initial"})
         refused({{key, "{law = \"manufactured\", speed = 1.0, divergence = 0.0}"}}, {key, "square", "0.8"});
-    refused({{"method", "\"grid\""}}, {"fluid.method", "grid", "sph"});
+    refused({{"method", "\"lattice\""}}, {"fluid.method", "grid", "sph"});
     refused({{"walls", "3"}}, {"fluid.walls", "unknown key"});
 }
 

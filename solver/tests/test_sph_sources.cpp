@@ -1,7 +1,7 @@
 // Sources of the fluid: the manufactured flow's derivatives, the equations it closes, and the time they are taken at.
+#include "core/initial_fields.hpp"
 #include "core/scene.hpp"
 #include "schemes/advance_fluid.hpp"
-#include "sph/initial_fields.hpp"
 
 #include "fluid_fixtures.hpp"
 

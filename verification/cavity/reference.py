@@ -99,11 +99,15 @@ def reference(quantity, scene, t):
     raise KeyError(quantity)
 
 
-def at_places(scene, fluid, component, s):
-    """u (v) over U at the places s [n] over L of the vertical (horizontal) centre line, by local_fit from the particles.
+def at_places(scene, snapshot, component, s):
+    """u (v) over U at the places s [n] over L of the vertical (horizontal) centre line: from a grid by splines, from particles
+    by local_fit.
 
     A place in a void, with too few particles to fit, has no velocity: what is there is not the flow, and VOID stands for it.
     """
+    if "grid" in snapshot:
+        return grid_line(scene, snapshot["grid"], component, s)
+    fluid = snapshot["fluid"]
     length, spacing = scene["domain"]["size"][0], scene["fluid"]["spacing"]
     middle = np.full(len(s), 0.5)
     places = np.stack((middle, s) if component == "u" else (s, middle), axis=1) * length
@@ -119,6 +123,17 @@ def fitted_or_void(x, values, place, radius):
         return VOID
 
 
+def grid_line(scene, grid, component, s):
+    """The same from velocities on faces: splines across the line, then along it with the walls' own velocities at its ends."""
+    length, speed = scene["domain"]["size"][0], lid_speed(scene)
+    faces, values = grid["nodes_" + "xy"["uv".index(component)]], grid["u_" + "xy"["uv".index(component)]][0]
+    other = grid["nodes_y" if component == "u" else "nodes_x"]
+    middle = CubicSpline(faces, values, axis=1 if component == "u" else 0)(0.5 * length)
+    places = np.concatenate(([0.0], 0.5 * (other[1:] + other[:-1]), [length])) / length
+    ends = (0.0, speed) if component == "u" else (0.0, 0.0)
+    return CubicSpline(places, np.concatenate(([ends[0]], middle, [ends[1]])))(s) / speed
+
+
 def last_third(run):
     """Numbers of the snapshots, from the end, that are judged."""
     return range(-(len(run.snapshot_files()) // 3), 0)
@@ -126,13 +141,13 @@ def last_third(run):
 
 def mean_at_places(run, component, s):
     """at_places averaged over the last third of the run's outputs: the noise of disordered particles never dies."""
-    return np.mean([at_places(run.scene, run.snapshot(k)["fluid"], component, s) for k in last_third(run)], axis=0)
+    return np.mean([at_places(run.scene, run.snapshot(k), component, s) for k in last_third(run)], axis=0)
 
 
 def nodes_of(run, k):
     """[2, NODES]: u and v over U at the nodes of their centre lines in the k-th snapshot."""
-    s, fluid = np.linspace(0.0, 1.0, NODES), run.snapshot(k)["fluid"]
-    return np.array([at_places(run.scene, fluid, component, s) for component in "uv"])
+    s, snapshot = np.linspace(0.0, 1.0, NODES), run.snapshot(k)
+    return np.array([at_places(run.scene, snapshot, component, s) for component in "uv"])
 
 
 def drift(run):

@@ -23,7 +23,7 @@ UNITS = {
     "drift": "1",
     "area_excess": "1",
 }
-NOMINAL = (0.2, 0.3, 0.4, 0.5)  # solid fractions of this case's arrays
+NOMINAL = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6)  # solid fractions of this case's arrays
 DENSEST = {"square": math.pi / 4.0, "hexagonal": math.pi / (2.0 * math.sqrt(3.0))}
 
 
@@ -162,7 +162,8 @@ def area_excess(scene, fluid):
     """Area of the particles over that of the pores, less 1: how well whole particles fit round the cylinders."""
     period = nominal(cell(scene))
     pores = (1.0 - period.solid_fraction) * period.area
-    return len(fluid["x"]) * scene["fluid"]["spacing"] ** 2 / pores - 1.0
+    spacing = np.broadcast_to(scene["fluid"]["spacing"], 2)
+    return float(np.sum(fluid.get("open", np.ones(len(fluid["x"]))))) * spacing[0] * spacing[1] / pores - 1.0
 
 
 def measure(quantity, run):
@@ -185,7 +186,7 @@ def table(runs):
         if run.failure is None:
             expected, (_, along, _) = reference("permeability", run.scene, None), probed(run)
             values = (along[-1], expected, 100.0 * (along[-1] / expected - 1.0), 100.0 * measure("drift", run), 100.0 * measure("area_excess", run))
-            rows.append([run.variant, f"{run.scene['fluid']['spacing']:g}", *(f"{value:.4g}" for value in values)])
+            rows.append([run.variant, f"{np.ravel(run.scene['fluid']['spacing'])[0]:g}", *(f"{value:.4g}" for value in values)])
     columns = ["variant", "spacing (m)", "K/r2", "theory", "error (%)", "drift (%)", "excess of area (%)"]
     return {"columns": columns, "rows": rows, "caption": "Permeability at the end of the run; drift is its change in the last fifth."}
 

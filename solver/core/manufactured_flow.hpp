@@ -2,8 +2,8 @@
 // two axes or components can be exchanged.
 #pragma once
 
+#include "core/flow_state.hpp"
 #include "core/table.hpp"
-#include "sph/flow_state.hpp"
 
 namespace plumb {
 

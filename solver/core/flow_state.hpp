@@ -1,8 +1,8 @@
 // What initial fields and sources are told about the fluid, and what they answer.
 #pragma once
 
+#include "core/equation_of_state.hpp"
 #include "core/vec.hpp"
-#include "sph/equation_of_state.hpp"
 
 namespace plumb {
 

@@ -1,4 +1,4 @@
-#include "sph/manufactured_flow.hpp"
+#include "core/manufactured_flow.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,0 +1,89 @@
+#include "grid/grid_fluid.hpp"
+
+namespace plumb {
+
+namespace {
+
+/// True for a face on a side of the box that prescribes its velocity.
+bool prescribed(const GridFluid& f, std::size_t c, const Place& p) {
+    const Axis& axis = f.grid.axis[c];
+    if (axis.periodic) return false;
+    const bool lower = p[c] == 0, upper = p[c] == axis.cells();
+    return (lower && f.sides[c][0].kind != GridSide::Kind::outflow) ||
+           (upper && f.sides[c][1].kind != GridSide::Kind::outflow);
+}
+
+} // namespace
+
+void number_unknowns(GridFluid& f) {
+    const Block cells = f.grid.cells();
+    std::vector<char> reached(cells.size(), 0);
+    for (std::size_t c = 0; c < f.dimensions(); ++c) {
+        const Block faces = f.grid.faces(c);
+        f.unknown[c].assign(faces.size(), -1);
+        f.unknowns[c] = 0;
+        for_each_place(faces, [&](const Place& p, std::size_t k) {
+            if (f.open.face[c][k] == 0.0) return;
+            if (!prescribed(f, c, p)) f.unknown[c][k] = f.unknowns[c]++;
+            for (const int cell : {f.grid.axis[c].cell_below(p[c]), f.grid.axis[c].cell_above(p[c])}) {
+                Place q = p;
+                q[c] = cell;
+                if (cell >= 0) reached[cells.at(q)] = 1;
+            }
+        });
+    }
+    f.unknown_pressure.assign(cells.size(), -1);
+    f.unknown_pressures = 0;
+    for (std::size_t k = 0; k < cells.size(); ++k)
+        if (reached[k]) f.unknown_pressure[k] = f.unknown_pressures++;
+}
+
+double face_eps(const GridFluid& f, std::size_t c, const Place& face) {
+    const Block cells = f.grid.cells();
+    Place below = face, above = face;
+    below[c] = f.grid.axis[c].cell_below(face[c]);
+    above[c] = f.grid.axis[c].cell_above(face[c]);
+    if (below[c] < 0) return f.eps[cells.at(above)];
+    if (above[c] < 0) return f.eps[cells.at(below)];
+    return 0.5 * (f.eps[cells.at(below)] + f.eps[cells.at(above)]);
+}
+
+double open_area(const GridFluid& f, std::size_t c, const Place& face) {
+    return face_eps(f, c, face) * f.open.face[c][f.grid.faces(c).at(face)] * f.grid.face_area(c, face);
+}
+
+RowMatrix divergence_rows(const GridFluid& f, std::size_t c) {
+    const Block cells = f.grid.cells(), faces = f.grid.faces(c);
+    std::vector<Eigen::Triplet<double, int>> entries;
+    for_each_place(cells, [&](const Place& p, std::size_t k) {
+        const int row = f.unknown_pressure[k];
+        if (row < 0) return;
+        Place above = p;
+        above[c] = f.grid.axis[c].face_above(p[c]);
+        if (const int u = f.unknown[c][faces.at(p)]; u >= 0) entries.emplace_back(row, u, -open_area(f, c, p));
+        if (const int u = f.unknown[c][faces.at(above)]; u >= 0) entries.emplace_back(row, u, open_area(f, c, above));
+    });
+    RowMatrix rows(f.unknown_pressures, f.unknowns[c]);
+    rows.setFromTriplets(entries.begin(), entries.end());
+    return rows;
+}
+
+Eigen::VectorXd known_divergence(const GridFluid& f) {
+    Eigen::VectorXd out = Eigen::VectorXd::Zero(f.unknown_pressures);
+    const Block cells = f.grid.cells();
+    for (std::size_t c = 0; c < f.dimensions(); ++c) {
+        const Block faces = f.grid.faces(c);
+        for_each_place(faces, [&](const Place& p, std::size_t k) {
+            if (f.unknown[c][k] >= 0 || f.open.face[c][k] == 0.0) return;
+            const double flux = open_area(f, c, p) * f.u[c][k];
+            Place below = p, above = p;
+            below[c] = f.grid.axis[c].cell_below(p[c]);
+            above[c] = f.grid.axis[c].cell_above(p[c]);
+            if (below[c] >= 0) out[f.unknown_pressure[cells.at(below)]] += flux;
+            if (above[c] >= 0) out[f.unknown_pressure[cells.at(above)]] -= flux;
+        });
+    }
+    return out;
+}
+
+} // namespace plumb

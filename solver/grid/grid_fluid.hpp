@@ -1,0 +1,91 @@
+// The fluid on a grid: an incompressible fluid of which each cell holds the share eps.
+//
+//     d(eps)/dt + div(eps u) = 0
+//     eps rho (du/dt + u . grad u) = -eps grad p + div(eps mu grad u) + eps rho f + ...
+//
+// (Anderson & Jackson 1967, Ind. Eng. Chem. Fundam. 6, 527; model A). One velocity per face, normal to it.
+#pragma once
+
+#include "core/domain.hpp"
+#include "core/field.hpp"
+#include "core/inlet_profiles.hpp"
+#include "grid/advection.hpp"
+#include "grid/apertures.hpp"
+#include "grid/grid.hpp"
+
+#include <Eigen/SparseCore>
+
+#include <array>
+#include <vector>
+
+namespace plumb {
+
+/// What the fluid meets on a side of the box.
+struct GridSide {
+    enum class Kind { periodic, no_slip, free_slip, inflow, outflow };
+    Kind kind = Kind::periodic;
+    Vec3 velocity = Vec3::Zero(); // of a wall, along itself [m/s]
+    double pressure = 0.0;        // behind an outflow [Pa]
+};
+
+using Velocity = std::array<Field<double>, 3>; // by face of each axis [m/s]
+
+struct GridFluid {
+    Grid grid;
+    Domain domain;
+    std::array<std::array<GridSide, 2>, 3> sides{}; // at the lower and the upper end of each axis
+    Apertures open;
+
+    double density = 0.0, viscosity = 0.0; // [kg/m3], dynamic [Pa s]
+    Vec3 body_force = Vec3::Zero();        // [m/s2]
+    Advection advection = NoAdvection{};
+    bool second_order = true; // in time: backward differences over two steps, else over one
+    double residual = 1e-8;   // of the momentum and mass equations, relative to what drives the step
+
+    Velocity u;        // unknown or, on sides that prescribe it, given
+    Velocity u_before; // a step before, empty before the second step
+    Field<double> p;   // by cell [Pa]
+    Field<double> eps; // by cell
+
+    // which faces and cells are solved for: their number, by face and cell, -1 where they are not
+    std::array<std::vector<int>, 3> unknown;
+    std::vector<int> unknown_pressure;
+    std::array<int, 3> unknowns{};
+    int unknown_pressures = 0;
+
+    std::int64_t iterations = 0;    // of the linear solver, over all steps
+    double greatest_residual = 0.0; // left by it in any step
+
+    std::size_t dimensions() const { return static_cast<std::size_t>(grid.dimensions); }
+};
+
+/// Numbers the unknowns: faces that are open and not prescribed, cells with an open face. The sides and the apertures
+/// are there.
+void number_unknowns(GridFluid& fluid);
+
+/// Mean of eps on either side of a face.
+double face_eps(const GridFluid& fluid, std::size_t c, const Place& face);
+
+/// eps times the open area of a face [m2].
+double open_area(const GridFluid& fluid, std::size_t c, const Place& face);
+
+using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+
+/// One component of the momentum equation: matrix u = known + ..., in newtons.
+struct MomentumRows {
+    RowMatrix matrix;
+    Eigen::VectorXd known; // what prescribed velocities and pressures add to the right-hand side
+    Eigen::VectorXd mass;  // of the control volumes, rho eps V [kg]
+    Eigen::VectorXd room;  // eps times open area times dual width [m3]: what a uniform force per volume acts on
+};
+
+/// Friction and what the mass flux of `carrier` carries, plus mass times `per_time` [1/s].
+MomentumRows momentum_rows(const GridFluid& fluid, std::size_t c, const Velocity& carrier, double per_time);
+
+/// div(eps u) over the cells by unknown velocities of component c [m2].
+RowMatrix divergence_rows(const GridFluid& fluid, std::size_t c);
+
+/// What prescribed velocities carry out of the cells [m3/s].
+Eigen::VectorXd known_divergence(const GridFluid& fluid);
+
+} // namespace plumb

@@ -1,0 +1,66 @@
+// Velocity and pressure of one step together,
+//     A u - D^T p = f,    D u = s,
+// with A the momentum rows, D the divergence: Krylov's method with one projection step as its preconditioner, so that
+// nothing of the splitting is left in the answer (Griffith 2009, J. Comput. Phys. 228, 7565).
+#pragma once
+
+#include "grid/grid_fluid.hpp"
+
+#include <Eigen/SparseCholesky>
+
+#include <memory>
+
+namespace plumb {
+
+/// The matrices of a step. Mass is weighed so that its rows are as large as those of momentum: they are times
+/// `pressure_scale`, the last unknowns are p over it.
+struct SaddleSystem {
+    std::array<MomentumRows, 3> momentum;
+    std::array<RowMatrix, 3> divergence, gradient; // D and its transpose, by component
+    Eigen::VectorXd known_divergence;              // weighed like the rows of mass
+    std::size_t dimensions = 2;
+    double pressure_scale = 1.0; // [kg/(m2 s)]
+    bool closed = false;         // no outflow: the mean pressure is arbitrary
+};
+
+/// The system of the present boundaries, apertures and porosity, with `carrier` the velocities that carry momentum and
+/// mass times `per_time` [1/s] added.
+SaddleSystem saddle_system(const GridFluid& fluid, const Velocity& carrier, double per_time);
+
+/// All unknowns in one vector: the components of u, then p.
+struct SaddleLayout {
+    std::array<Eigen::Index, 4> begin{};
+    Eigen::Index size = 0;
+};
+SaddleLayout layout(const SaddleSystem& system);
+
+/// An approximate inverse: A by its symmetric part, factored, and the Schur complement D A^-1 D^T by
+///     S^-1 = L^-1 (D Q^-1 A Q^-1 D^T) L^-1,    L = D Q^-1 D^T,    Q = diag A
+/// (least-squares commutator: Elman et al. 2006, SIAM J. Sci. Comput. 27, 1651), which is a projection step where A is
+/// diagonal and knows friction, drag and advection where it is not.
+class ProjectionPreconditioner {
+public:
+    explicit ProjectionPreconditioner(const SaddleSystem& system);
+    Eigen::VectorXd operator()(const Eigen::VectorXd& residual) const;
+
+private:
+    using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>>;
+    Eigen::VectorXd schur_inverse(const Eigen::VectorXd& r) const;
+
+    const SaddleSystem* system_;
+    SaddleLayout layout_;
+    std::array<std::unique_ptr<Factor>, 3> velocity_;
+    std::array<Eigen::VectorXd, 3> inverse_diagonal_;
+    Factor poisson_;
+};
+
+struct SolveReport {
+    int iterations = 0;
+    double residual = 0.0; // relative to the right-hand side's scale
+};
+
+/// Improves `x` until the residual is below `tolerance` times the right-hand side, or says how far it came.
+SolveReport solve(const SaddleSystem& system, const ProjectionPreconditioner& preconditioner,
+                  const Eigen::VectorXd& right, double tolerance, int most_iterations, Eigen::VectorXd& x);
+
+} // namespace plumb

@@ -1,0 +1,79 @@
+#include "schemes/advance_grid.hpp"
+
+#include "core/errors.hpp"
+#include "core/parallel.hpp"
+#include "grid/saddle_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plumb {
+
+namespace {
+
+constexpr int most_iterations = 300; // a solve that takes more will not come to its end
+
+bool two_steps_known(const GridFluid& f) { return f.second_order && !f.u_before[0].empty(); }
+
+/// The velocity at the end of the step as the last steps continue.
+Velocity continued(const GridFluid& f) {
+    Velocity u = f.u;
+    if (!two_steps_known(f)) return u;
+    for (std::size_t c = 0; c < f.dimensions(); ++c)
+        parallel_for(u[c].size(), [&](std::size_t k) { u[c][k] = 2.0 * f.u[c][k] - f.u_before[c][k]; });
+    return u;
+}
+
+/// The numbers of the unknown faces of component c in a vector.
+template <class Of> Eigen::VectorXd unknowns(const GridFluid& f, std::size_t c, Of&& of) {
+    Eigen::VectorXd values(f.unknowns[c]);
+    for (std::size_t k = 0; k < f.unknown[c].size(); ++k)
+        if (f.unknown[c][k] >= 0) values[f.unknown[c][k]] = of(k);
+    return values;
+}
+
+/// Right-hand side: what the last steps leave, forces, known velocities.
+Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, double dt) {
+    const SaddleLayout at = layout(s);
+    Eigen::VectorXd right(at.size);
+    const bool two = two_steps_known(f);
+    for (std::size_t c = 0; c < f.dimensions(); ++c) {
+        const MomentumRows& rows = s.momentum[c];
+        const Eigen::VectorXd before = unknowns(f, c, [&](std::size_t k) {
+            return two ? (2.0 * f.u[c][k] - 0.5 * f.u_before[c][k]) / dt : f.u[c][k] / dt;
+        });
+        right.segment(at.begin[c], before.size()) = rows.mass.cwiseProduct(before) + rows.known +
+                                                    f.density * f.body_force[static_cast<Eigen::Index>(c)] * rows.room;
+    }
+    right.tail(s.known_divergence.size()) = -s.known_divergence;
+    return right;
+}
+
+} // namespace
+
+void advance_grid(GridFluid& f, double dt, std::int64_t step) {
+    const Velocity carrier = continued(f);
+    const SaddleSystem s = saddle_system(f, carrier, (two_steps_known(f) ? 1.5 : 1.0) / dt);
+    const SaddleLayout at = layout(s);
+    const Eigen::VectorXd right = right_hand_side(f, s, dt);
+    Eigen::VectorXd x(at.size);
+    for (std::size_t c = 0; c < f.dimensions(); ++c)
+        x.segment(at.begin[c], f.unknowns[c]) = unknowns(f, c, [&](std::size_t k) { return carrier[c][k]; });
+    for (std::size_t k = 0; k < f.p.size(); ++k)
+        if (f.unknown_pressure[k] >= 0) x[at.begin[3] + f.unknown_pressure[k]] = f.p[k] / s.pressure_scale;
+    const SolveReport report = solve(s, ProjectionPreconditioner(s), right, f.residual, most_iterations, x);
+    f.iterations += report.iterations;
+    f.greatest_residual = std::max(f.greatest_residual, report.residual);
+    const double time = dt * static_cast<double>(step);
+    if (!(report.residual <= 2.0 * f.residual))
+        throw Diverged(step, time, "residual of the fluid's equations", 0, report.residual,
+                       "the step's linear equations were not solved");
+    if (f.second_order) f.u_before = f.u;
+    for (std::size_t c = 0; c < f.dimensions(); ++c)
+        for (std::size_t k = 0; k < f.u[c].size(); ++k)
+            if (f.unknown[c][k] >= 0) f.u[c][k] = x[at.begin[c] + f.unknown[c][k]];
+    for (std::size_t k = 0; k < f.p.size(); ++k)
+        if (f.unknown_pressure[k] >= 0) f.p[k] = s.pressure_scale * x[at.begin[3] + f.unknown_pressure[k]];
+}
+
+} // namespace plumb
