@@ -21,12 +21,17 @@ AMPLITUDE = {"grains.csv": 1.0, "grains_tenth.csv": 0.1}  # of the published dis
 GRID = 2e-3  # s, on which the linear solution is tabulated: n^2 GRID^2/8 = 1e-3 at most, in a logarithm that bends by that
 
 
-def setting(scene):
-    """Of the scene as it is meant: coupling, drag and the grains are the case's, which a twin may break."""
-    fluid = scene["fluid"]
+def closure(run):
+    """Of the suspension's viscosity, as it is meant."""
+    return "krieger_dougherty" if "suspension" in run.variant else "pure_fluid"
+
+
+def setting(run):
+    """Of the run as it is meant: coupling, drag and the grains are the case's, which a twin may break."""
+    fluid = run.scene["fluid"]
     h = 1.5 * fluid["spacing"]
     return released_layers.Setting(fluid["density"], fluid["viscosity"], h, sedimentation_scene.coupling_width(h, rayleigh_taylor.EPS),
-                                   fluid["smoothing"] * fluid["spacing"], kernel=fluid["kernel"])
+                                   fluid["smoothing"] * fluid["spacing"], kernel=fluid["kernel"], viscosity=closure(run))
 
 
 def start_amplitude(scene):
@@ -42,8 +47,8 @@ class Linear(NamedTuple):
     fall: np.ndarray
 
 
-def linear(scene):
-    return solved(setting(scene), scene["time"]["end"])
+def linear(run):
+    return solved(setting(run), run.scene["time"]["end"])
 
 
 @lru_cache(maxsize=None)
@@ -89,13 +94,13 @@ def interpolated(t, times, values):
     return np.exp(np.interp(t, times, np.log(values)))
 
 
-def window(scene, mode):
+def window(run, mode):
     """(start, end) in s, from theory alone, at most to the end of the run; NaN if it does not get so far."""
-    found, k = linear(scene), sedimentation_scene.wave_numbers()[mode]
+    found, k = linear(run), sedimentation_scene.wave_numbers()[mode]
     rise = found.rise[mode]
-    developed = np.gradient(np.log(rise), found.t) >= DEVELOPED * rates(setting(scene))[mode]
+    developed = np.gradient(np.log(rise), found.t) >= DEVELOPED * rates(setting(run))[mode]
     start = float(found.t[np.argmax(developed)]) if developed.any() else math.nan
-    return start, float(np.interp(STEEP, k * start_amplitude(scene) * rise, found.t))
+    return start, float(np.interp(STEEP, k * start_amplitude(run.scene) * rise, found.t))
 
 
 def fitted(t, amplitude, start, end):
@@ -108,16 +113,16 @@ def fitted(t, amplitude, start, end):
 
 def growth(run):
     """(fitted rate of the run, of the linear solution in the same window) of both waves, 1/s."""
-    m, found, pairs = measured(run), linear(run.scene), []
+    m, found, pairs = measured(run), linear(run), []
     for mode in (0, 1):
-        ends = window(run.scene, mode)
+        ends = window(run, mode)
         pairs.append((fitted(m.t, m.amplitude[mode], *ends), fitted(m.t, interpolated(m.t, found.t, found.rise[mode]), *ends)))
     return pairs
 
 
 def settled_rates(run):
     """Rates that the run would have without start and settling: the relation's, times measured over linear; 1/s."""
-    return [n * one / other for n, (one, other) in zip(rates(setting(run.scene)), growth(run))]
+    return [n * one / other for n, (one, other) in zip(rates(setting(run)), growth(run))]
 
 
 def published(scene):
@@ -128,9 +133,9 @@ def published(scene):
     return [rayleigh_taylor.growth_rate(k, (fluid["rho"], fluid["mu"]), (rho_2, mu_2)) for k in sedimentation_scene.wave_numbers()]
 
 
-def lowest(scene, t):
+def lowest(run, t):
     """Fall of the lowest grain by linear theory, m."""
-    a0, found = start_amplitude(scene), linear(scene)
+    a0, found = start_amplitude(run.scene), linear(run)
     rise = [interpolated(t, found.t, one) for one in found.rise]
     return np.interp(t, found.t, found.fall) + a0 * (2.0 * (rise[0] - 1.0) + rise[1] - 1.0)
 
@@ -142,13 +147,13 @@ def measure(quantity, run):
         return max(abs(one / other - 1.0) for one, other in growth(run))
     if quantity == "over_published":
         return max(one / other for one, other in zip(settled_rates(run), published(run.scene)))
-    a0, m, found = start_amplitude(run.scene), measured(run), linear(run.scene)
+    a0, m, found = start_amplitude(run.scene), measured(run), linear(run)
     if quantity == "lowest":
-        last = int(np.searchsorted(m.t, window(run.scene, 0)[1] + 1e-9, side="right")) - 1
-        return float(abs(m.lowest[last] / lowest(run.scene, m.t[last]) - 1.0))
+        last = int(np.searchsorted(m.t, window(run, 0)[1] + 1e-9, side="right")) - 1
+        return float(abs(m.lowest[last] / lowest(run, m.t[last]) - 1.0))
     worst = 0.0
     for mode in (0, 1):
-        before = m.t <= window(run.scene, mode)[1] + 1e-9
+        before = m.t <= window(run, mode)[1] + 1e-9
         linear_rise = a0 * interpolated(m.t[before], found.t, found.rise[mode])
         worst = max(worst, float(np.max(np.abs(np.log(np.maximum(m.amplitude[mode][before], 1e-12) / linear_rise)))))
     return worst
@@ -170,17 +175,17 @@ def name(run):
 def table(runs):
     rows = []
     for run in runs:
-        s = setting(run.scene)
+        s = setting(run)
         fluid = {"rho": s.rho, "mu": s.mu}
         for mode, (k, n, (one, other), slides) in enumerate(
                 zip(sedimentation_scene.wave_numbers(), rates(s), growth(run), published(run.scene))):
-            sharp = layered.growth_rate(k, fluid, layered.scene_layer(), layered.SHARP, depth=layered.Depth(s.height, s.floor, s.floor))
-            start, end = window(run.scene, mode)
+            sharp = layered.growth_rate(k, fluid, layered.scene_layer(), layered.SHARP, layered.Closure(s.viscosity), depth=layered.Depth(s.height, s.floor, s.floor))
+            start, end = window(run, mode)
             rows.append([name(run), f"{k:.0f}", f"{1e3 * start:.0f} to {1e3 * end:.0f}", f"{one:.2f}", f"{other:.2f}", f"{one / other - 1.0:+.3f}",
                          f"{n:.2f}", f"{n * one / other:.2f}", f"{sharp:.2f}", f"{slides:.2f}"])
     return {"columns": ["run", "k (1/m)", "window (ms)", "rate of the run", "linear", "error", "relation", "relation x run/linear",
                         "sharp layer", "slides' reference"], "rows": rows,
-            "caption": "Rates in 1/s. Relation: largest rate of the layer at rest, seen through the kernels; sharp layer: without them, both with mu_2 = mu."}
+            "caption": "Rates in 1/s. Relation: largest rate of the layer at rest, seen through the kernels; sharp layer: without them; both with mu_2 = mu, or with the run's suspension viscosity."}
 
 
 def figures(runs):
@@ -189,12 +194,12 @@ def figures(runs):
     figure = Figure(figsize=(11.0, 4.4), layout="constrained")
     left, right = figure.subplots(1, 2)
     for number, run in enumerate(runs):
-        a0, m, found, colour = start_amplitude(run.scene), measured(run), linear(run.scene), f"C{number % 10}"
+        a0, m, found, colour = start_amplitude(run.scene), measured(run), linear(run), f"C{number % 10}"
         for mode, mark in ((0, "o"), (1, "x")):
             inside = found.t <= m.t[-1] + 1e-9
             left.plot(1e3 * found.t[inside], a0 * found.rise[mode][inside] * 1e6, "-", color=colour, lw=0.8)
             left.plot(1e3 * m.t, 1e6 * m.amplitude[mode], mark, color=colour, ms=3.0, mfc="none", label=name(run) if mode == 0 else None)
-        right.plot(1e3 * m.t, 1e6 * lowest(run.scene, m.t), "-", color=colour, lw=0.8)
+        right.plot(1e3 * m.t, 1e6 * lowest(run, m.t), "-", color=colour, lw=0.8)
         right.plot(1e3 * m.t, 1e6 * m.lowest, "o", color=colour, ms=3.0, mfc="none")
     for run in {run.variant: run for run in runs if "tenth" not in run.variant}.values():
         fluid, t = {"rho": run.scene["fluid"]["density"], "mu": run.scene["fluid"]["viscosity"]}, measured(run).t
