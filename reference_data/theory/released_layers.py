@@ -184,22 +184,23 @@ def spread_fraction(s, x, z):
     return V / s.lattice.spacing**2 * plane_average(x.z[:, None] - z, s.h_c).sum(axis=1)
 
 
+def through(s, x, z, width, k):
+    """c and Dc of the splines x at heights z, seen through a kernel of that width: [layers, splines] each."""
+    weights = _wave(z[:, None] - x.z, width, k) * x.weight
+    inside = plane_share(s.height - z, width) - plane_share(-z, width)
+    return (weights @ x.value) / inside[:, None], (weights @ x.first) / inside[:, None]
+
+
 def matrices(s, k, z):
     """E, B of E dy/dt = B y for layers at heights z; y = [c, Z, X, vz, vx]."""
     x, n = _space(s), len(z)
     area = s.lattice.spacing**2
-    value, first, second = x.value, x.first, x.second
 
-    def through(width):
-        weights = _wave(z[:, None] - x.z, width, k) * x.weight
-        inside = plane_share(s.height - z, width) - plane_share(-z, width)
-        return (weights @ value) / inside[:, None], (weights @ first) / inside[:, None]
-
-    (spread, spread_d), (gather, gather_d) = through(s.h_c), through(s.h)
+    (spread, spread_d), (gather, gather_d) = (through(s, x, z, width, k) for width in (s.h_c, s.h))
     now = base(s, z)
     heavy = (1.0 - spread_fraction(s, x, z)) * s.rho
     m_p, tau = GRAIN["rho_p"] * V, hindered_relaxation_time(s.fluid, 0.8, settling_slip(s.fluid, 0.8))
-    size = value.shape[1]
+    size = x.value.shape[1]
     lengths = [size, n, n, n, n]
     ends = np.cumsum(lengths)
     c, disp_z, disp_x, vz, vx = (slice(end - length, end) for end, length in zip(ends, lengths))
