@@ -229,7 +229,8 @@ def figures(runs):
         path = rayleigh_taylor.lowest_grain(t, published(run.scene), rayleigh_taylor.settling_slip(fluid, rayleigh_taylor.EPS))
         right.plot(1e3 * t, 1e6 * path, ":", color="k", lw=1.2)
     label(left, right)
-    left.legend(fontsize=6)
+    left.set_ylim(bottom=0.1 * left.get_ylim()[0])
+    left.legend(fontsize=6, ncol=3, loc="lower center")
     found = [("growth", figure, "Lines: linear theory; marks: runs, wave k; crosses: wave √2 k. Right: lines linear theory, dotted the slides' "
               "relation growing from t = 0.")]
     air = [run for run in runs if in_air(run)]

@@ -20,6 +20,7 @@ LOST = 0.2
 SHARP = 5e-5  # m: kernels of a third of the layers' distance, for the waves a slab with sharp edges
 PLACES = (1.3, 1.6, 1.9, 2.2)  # h over spacing, at which the predicted loss is worked out
 SHORT = ("inside", "outside")  # runs that are no bisection's
+MANY = 0.01  # share of paired particles that the map marks
 PAIRED = 0.6  # spacings: particles closer than this count as paired
 
 
@@ -136,6 +137,10 @@ def figures(runs):
         style, label = ("C0o", "loses less than a fifth") if stable else ("C3x", "loses more")
         left.plot(re, wavelength() / h, style, ms=5, mfc="none", label=None if label in seen else label)
         seen.add(label)
+        if paired(run) > MANY:
+            many = None if "many" in seen else f"more than {100 * MANY:g} % of the particles paired"
+            left.plot(re, wavelength() / h, "ko", ms=10, mfc="none", lw=0.6, mew=0.6, label=many)
+            seen.add("many")
         if variant not in SHORT:
             edge[re] = wavelength() / (boundary(run.scene) * run.scene["fluid"]["spacing"])
         right.plot(predicted_loss(run.scene, h), found, style, ms=5, mfc="none")
