@@ -14,7 +14,7 @@ sys.path.insert(0, str(ROOT.parent / "verification" / "rayleigh_taylor"))
 
 import displaced_lattice  # noqa: E402
 from theory import layered_rayleigh_taylor as layered  # noqa: E402
-from theory import lattice_elasticity, rayleigh_taylor, released_layers, settling, sph_operators  # noqa: E402
+from theory import lattice_elasticity, layer_friction, rayleigh_taylor, released_layers, settling, sph_operators  # noqa: E402
 from theory import sedimentation_scene as scene  # noqa: E402
 from theory.released_layers import Setting  # noqa: E402
 
@@ -51,8 +51,8 @@ def test_morris_average_transforms_into_its_symbol(kernel):
     """2 nu [M^(0) - M^(q)] at wave vector (k, q) is lambda."""
     h, k, q = 1.0, 1.1, 0.9
     z = np.linspace(0.0, sph_operators.support(kernel) * h, 4001)
-    whole = 2.0 * integrate.simpson(released_layers.morris_average(z, kernel, h, 0.0), x=z)
-    wave = 2.0 * integrate.simpson(released_layers.morris_average(z, kernel, h, k) * np.cos(q * z), x=z)
+    whole = 2.0 * integrate.simpson(layer_friction.morris_average(z, kernel, h, 0.0), x=z)
+    wave = 2.0 * integrate.simpson(layer_friction.morris_average(z, kernel, h, k) * np.cos(q * z), x=z)
     square = k**2 + q**2
     assert 2.0 * (whole - wave) == pytest.approx(square * sph_operators.viscosity_ratio(kernel, 3, math.sqrt(square) * h), rel=1e-5)
 
@@ -102,6 +102,74 @@ def test_history_does_not_depend_on_its_steps():
     s, k = setting("water", 10), scene.wave_numbers()[0]
     coarse, fine = (released_layers.history(s, k, (0.0, 0.02, 0.04), most).rise[-1, 0] for most in (4e-3, 1e-3))
     assert coarse == pytest.approx(fine, rel=1e-3)
+
+
+@pytest.mark.parametrize("across, mode", [(10, 0), (10, 1), (30, 1)])
+def test_layers_of_more_viscous_suspension_grow_like_the_slab(across, mode):
+    """Newton's friction with mu(phi): the form "gathered" with the same closure, whose sharp limit is Chandrasekhar's (test_rayleigh_taylor)."""
+    s, k = setting("glycerol_water", across, settles=False, morris=False, viscosity="krieger_dougherty"), scene.wave_numbers()[mode]
+    fluid = settling.FLUIDS["glycerol_water"]
+    tau = rayleigh_taylor.hindered_relaxation_time(fluid, 0.8, rayleigh_taylor.settling_slip(fluid, 0.8))
+    closure = layered.Closure("krieger_dougherty", tau, s.rho / settling.GRAIN["rho_p"])
+    slab = layered.growth_rate(k, fluid, layered.scene_layer(), s.h_c, closure, WALLED, s.h)
+    assert released_layers.growth_rate(s, k) == pytest.approx(slab, rel=0.01)
+
+
+def test_sharp_deep_layer_has_chandrasekhars_rate_with_the_closures_viscosity():
+    """Both depths 8 times 1/k, an edge of 0.01 mm; mu_2 = 1.82 mu."""
+    fluid, layer, k = settling.FLUIDS["glycerol_water"], layered.Layer(5e-3, 10e-3, 0.2), scene.wave_numbers()[0]
+    found = layered.growth_rate(k, fluid, layer, layered.SHARP, layered.Closure("krieger_dougherty"), layered.Depth(10e-3, "no_slip", "no_slip"))
+    mu_2 = rayleigh_taylor.suspension_viscosity(fluid["mu"], 0.8)
+    assert mu_2 / fluid["mu"] == pytest.approx(1.82, abs=0.005)
+    deep = rayleigh_taylor.growth_rate(k, (fluid["rho"], fluid["mu"]), (0.8 * fluid["rho"] + 0.2 * settling.GRAIN["rho_p"], mu_2))
+    assert found == pytest.approx(deep, rel=2e-3)
+
+
+def viscosity_step(s):
+    """(points, mu) of a smoothed step of the viscosity from 1 to 1.8 in the middle of the layer's space."""
+    x = released_layers._space(s)
+    return x, 1.4 + 0.4 * np.tanh((x.z - 3.6e-3) / 0.4e-3)
+
+
+def smooth_field(s, x):
+    return np.linalg.lstsq(x.value.toarray(), np.sin(math.pi * x.z / s.height) ** 4, rcond=None)[0]
+
+
+def test_pair_friction_of_long_waves_is_the_gradient_form():
+    """A smooth field's dissipation differs by terms of (K h)^2."""
+    s, k = setting("glycerol_water", 20), scene.wave_numbers()[0]
+    x, mu = viscosity_step(s)
+    c, error = smooth_field(s, x), []
+    for h in (0.6e-3, 0.3e-3):
+        pairs = layer_friction.form(x, mu, k, layer_friction.Operator("wendland_c2", h, s.height, "no_slip"))
+        error.append(abs(c @ pairs @ c / (c @ layer_friction.limit_form(x, mu, k) @ c) - 1.0))
+    assert error[1] < 0.03
+    assert error[1] == pytest.approx(error[0] / 4.0, rel=0.1)
+
+
+def test_pair_friction_is_newtons_where_the_viscosity_is_uniform():
+    s, k = setting("glycerol_water", 20), scene.wave_numbers()[0]
+    x, mu = viscosity_step(s)
+    one, c = np.ones_like(mu), smooth_field(s, x)
+    newton = layered.viscous_form(x, one, k)
+    np.testing.assert_allclose(layer_friction.limit_form(x, one, k), newton, atol=1e-8 * np.abs(newton).max())
+    assert c @ layer_friction.limit_form(x, mu, k) @ c < 0.97 * (c @ layered.viscous_form(x, mu, k) @ c)
+
+
+def test_a_uniform_excess_adds_to_the_viscosity():
+    """Grains so few that the porosity hardly varies: the suspension's friction is the pure fluid's at mu (1 + excess)."""
+    s, k = setting("water", 10, viscosity="krieger_dougherty"), scene.wave_numbers()[1]
+    pure = released_layers.friction(s._replace(viscosity="pure_fluid"), k, s.lattice.heights)
+    far = released_layers.friction(s, k, np.array([-1.0]))  # no layer within reach
+    np.testing.assert_allclose(far, pure, rtol=1e-12, atol=1e-12 * np.abs(pure).max())
+    many = released_layers.friction(s, k, s.lattice.heights)
+    assert 1.0 < np.trace(many) / np.trace(pure) < 1.82
+
+
+def test_suspension_viscosity_slows_growth_from_the_start():
+    k, times = scene.wave_numbers()[1], (0.0, 0.03)
+    pure, full = (released_layers.history(setting("glycerol_water", 10, viscosity=law), k, times).rise[-1, 0] for law in ("pure_fluid", "krieger_dougherty"))
+    assert 1.0 < full < pure
 
 
 @pytest.mark.parametrize("kernel", ["wendland_c2", "quintic_spline"])

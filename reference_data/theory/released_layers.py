@@ -21,8 +21,8 @@ u_m, the velocity at which the grain would move without inertia, is Gc and what 
     u_m = Gc - dw_m z^ + Z_m D<u0> z^ - <(I - P) q>_m,                           q = z^ sum of the change of slip flux, -w phi               (3)
 
 (I - P) is the projection on gradients: fluid makes room for the flux of grains by a potential flow; its solenoidal part is friction's
-affair and in c. Base flow advects c. The viscous form is Morris' operator (sph_operators) with the velocity continued
-antisymmetrically behind the walls, or the exact one. Left out: the base's own start, second order in the waves, the change of S and G
+affair and in c. Base flow advects c. The viscous form is Morris' operator (layer_friction), or the exact one; with a suspension
+viscosity mu varies with the layers' own porosity at the time (drag stays that of the pure fluid). Left out: the base's own start, second order in the waves, the change of S and G
 while a layer falls but for its place, and the elasticity that particles on a lattice have under pressure (lattice_elasticity).
 """
 
@@ -33,14 +33,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy import linalg
 from scipy.interpolate import CubicSpline
-from scipy.special import j0
 
+from . import layer_friction
 from . import layered_rayleigh_taylor as layered
 from . import sedimentation_scene as scene
 from .plane_kernel import KERNEL, plane_average, plane_share, wave_average
 from .rayleigh_taylor import hindered_relaxation_time, settling_slip
 from .settling import GRAIN, GRAVITY
-from .sph_operators import KERNELS, support, transform
+from .sph_operators import transform
 
 V = scene.GRAIN_VOLUME
 
@@ -60,6 +60,7 @@ class Setting(NamedTuple):
     kernel: str = KERNEL  # of the fluid; the coupling's is Wendland's C2
     block: tuple = scene.BLOCK
     floor: str = "no_slip"
+    viscosity: str = "pure_fluid"  # of fluid among grains: layered.Closure
 
     @property
     def fluid(self):
@@ -76,19 +77,6 @@ class Setting(NamedTuple):
 
 
 # --- kernels along z ---
-
-
-def morris_average(z, kernel, h, k, points=48):
-    """Int (-W'(r)/r) J0(k s) 2 pi s ds over the plane at height z, r^2 = s^2 + z^2, 1/m3; of the fluid's kernel."""
-    node, weight = np.polynomial.legendre.leggauss(points)
-    chosen, z = KERNELS[kernel], np.abs(np.asarray(z, float)) / h
-    total = np.zeros_like(z)
-    for low, high in zip(chosen.knots[:-1], chosen.knots[1:]):
-        low = np.clip(z, low, high)
-        q = 0.5 * ((high + low)[..., None] + (high - low)[..., None] * node)
-        r = h * np.sqrt(np.maximum(q**2 - z[..., None] ** 2, 0.0))
-        total += np.sum(-chosen.slope(q) * j0(k * r) * weight, axis=-1) * 0.5 * (high - low)
-    return 2.0 * math.pi * chosen.sigma[3] * total / h**3
 
 
 @lru_cache(maxsize=64)
@@ -169,45 +157,50 @@ def _space(s):
     return layered._space(layered.Depth(s.height, s.floor, s.floor), (block.bottom, block.top), s.h_c)
 
 
-@lru_cache(maxsize=32)
-def _viscous(s, k):
+def friction(s, k, z):
+    """The viscous form of (1) with layers at heights z, whose porosity sets the viscosity."""
     x = _space(s)
+    if s.viscosity == "pure_fluid":
+        return _uniform_friction(s, k)
+    excess = layered.Closure(s.viscosity).mu(s.fluid, spread_fraction(s, x, z)) / s.mu - 1.0
     if not s.morris:
-        return layered.viscous_form(x, np.full_like(x.z, s.mu), k)
-    sideways = {"no_slip": -1.0, "free_slip": 1.0}[s.floor]
-    reach = np.linspace(0.0, support(s.kernel) * s.h_fluid, 1201)
-    table = CubicSpline(reach, morris_average(reach, s.kernel, s.h_fluid, k))
-    whole = 2.0 * CubicSpline(reach, morris_average(reach, s.kernel, s.h_fluid, 0.0)).integrate(0.0, reach[-1])
+        return layered.viscous_form(x, s.mu * (1.0 + excess), k)
+    return _uniform_friction(s, k) + layer_friction.form(x, s.mu * excess, k, _operator(s))
 
-    def pair(z):
-        return np.where(np.abs(z) < reach[-1], table(np.minimum(np.abs(z), reach[-1])), 0.0)
 
-    apart, sums = np.subtract.outer(x.z, x.z), np.add.outer(x.z, x.z)
-    near, images = pair(apart), pair(sums) + pair(2.0 * s.height - sums)
-    total = np.zeros((x.value.shape[1],) * 2)
-    for field, scale, sign in ((x.value.toarray(), 1.0, -1.0), (x.first.toarray(), 1.0 / k**2, sideways)):
-        weighted = field * x.weight[:, None]
-        total += 2.0 * s.mu * scale * (whole * field.T @ weighted - weighted.T @ (near + sign * images) @ weighted)
-    return 0.5 * (total + total.T)
+@lru_cache(maxsize=32)
+def _uniform_friction(s, k):
+    x = _space(s)
+    mu = np.full_like(x.z, s.mu)
+    return layer_friction.form(x, mu, k, _operator(s)) if s.morris else layered.viscous_form(x, mu, k)
+
+
+def _operator(s):
+    return layer_friction.Operator(s.kernel, s.h_fluid, s.height, s.floor)
+
+
+def spread_fraction(s, x, z):
+    """phi at the points of x of layers at heights z, as the fluid's particles know it."""
+    return V / s.lattice.spacing**2 * plane_average(x.z[:, None] - z, s.h_c).sum(axis=1)
+
+
+def through(s, x, z, width, k):
+    """c and Dc of the splines x at heights z, seen through a kernel of that width: [layers, splines] each."""
+    weights = _wave(z[:, None] - x.z, width, k) * x.weight
+    inside = plane_share(s.height - z, width) - plane_share(-z, width)
+    return (weights @ x.value) / inside[:, None], (weights @ x.first) / inside[:, None]
 
 
 def matrices(s, k, z):
     """E, B of E dy/dt = B y for layers at heights z; y = [c, Z, X, vz, vx]."""
     x, n = _space(s), len(z)
     area = s.lattice.spacing**2
-    value, first, second = x.value, x.first, x.second
 
-    def through(width):
-        weights = _wave(z[:, None] - x.z, width, k) * x.weight
-        inside = plane_share(s.height - z, width) - plane_share(-z, width)
-        return (weights @ value) / inside[:, None], (weights @ first) / inside[:, None]
-
-    (spread, spread_d), (gather, gather_d) = through(s.h_c), through(s.h)
+    (spread, spread_d), (gather, gather_d) = (through(s, x, z, width, k) for width in (s.h_c, s.h))
     now = base(s, z)
-    layers = V / area * plane_average(x.z[:, None] - z, s.h_c)
-    heavy = (1.0 - layers.sum(axis=1)) * s.rho
+    heavy = (1.0 - spread_fraction(s, x, z)) * s.rho
     m_p, tau = GRAIN["rho_p"] * V, hindered_relaxation_time(s.fluid, 0.8, settling_slip(s.fluid, 0.8))
-    size = value.shape[1]
+    size = x.value.shape[1]
     lengths = [size, n, n, n, n]
     ends = np.cumsum(lengths)
     c, disp_z, disp_x, vz, vx = (slice(end - length, end) for end, length in zip(ends, lengths))
@@ -215,7 +208,7 @@ def matrices(s, k, z):
 
     e[c, c] = layered.inertia_form(x, heavy, k)
     e[c, vz], e[c, vx] = m_p / area * spread.T, -m_p / area / k * spread_d.T
-    b[c, c] = -_viscous(s, k) - _advection(s, x, heavy, now, z, k)
+    b[c, c] = -friction(s, k, z) - _advection(s, x, heavy, now, z, k)
     b[c, disp_z], b[c, disp_x] = -s.excess / area * spread_d.T, s.excess * k / area * spread.T
 
     b[disp_z, vz] = b[disp_x, vx] = np.eye(n)
