@@ -69,7 +69,8 @@ void remember_own(Coupling& c, const FluidOnGrains& f, const GrainSystem& system
         const auto id = static_cast<std::size_t>(g.id[k]);
         const GatheredFluid& at = f.at_grains;
         Push& push = pushes[id];
-        push.force = force[id];
+        // A mean gradient drives less fluid where the grain is: that part of its weight is a push, too.
+        push.force = force[id] + c.places.volume[id] * f.mean_gradient;
         push.slip = at.u[id] + (0.5 * dt) * at.a[id] - 0.5 * (c.velocity[id] + g.v[k]);
         // Grains that settle hand on their weight whatever the fluid does; only held ones resist a wake.
         if (c.self->fraction > 0.0 && g.mobility[k] == 0.0)

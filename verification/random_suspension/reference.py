@@ -53,11 +53,11 @@ class Bed:
 
         return brentq(excess, 1e-9 * stokes, 3.0 * stokes, rtol=1e-12)
 
-    def mean_slip(self, eps, own_share, less=0.0):
+    def mean_slip(self, eps, own_share):
         """The law's slip averaged over the porosities eps [n] of the grains, by an interpolated table. `own_share`: every
-        grain's drag is its own eps, `less` something, times the weight, not that of the bed."""
+        grain's drag is its own eps times the weight, not that of the bed."""
         nodes = np.linspace(eps.min(), eps.max(), 33)
-        return float(np.interp(eps, nodes, [self.slip(e, e - less if own_share else None) for e in nodes]).mean())
+        return float(np.interp(eps, nodes, [self.slip(e, e if own_share else None) for e in nodes]).mean())
 
 
 # --- sums over a snapshot ---
@@ -134,12 +134,12 @@ def carried(bed, waves, structure, t):
 
 def own_marks(bed, structure_of, c_s, slip, t):
     """(velocity [m/s] upwards, share of volume) that `self_disturbance` takes out of what a grain gathers: the integral over all waves of
-    unbounded space, with S = structure_of(k), of the wake of the grain's own push eps W, and of its backflow at the slip w."""
+    unbounded space, with S = structure_of(k), of the wake of the grain's own push W, and of its backflow at the slip w."""
     scheme = self_disturbance.one_kernel(bed.kernel, bed.h)
     k, dk = self_disturbance.wave_numbers(scheme)
     measure = dk * k**2 / (2.0 * math.pi**2) * structure_of(k) * sph_operators.transform(bed.kernel, 3, k * bed.h) ** 2
     rate = bed.mu / bed.rho * k**2 * sph_operators.viscosity_ratio(bed.kernel, 3, k * bed.smoothing)
-    wake = -(2.0 / 3.0) * bed.eps * bed.weight / bed.rho * float(measure @ (-np.expm1(-rate * t) / rate))
+    wake = -(2.0 / 3.0) * bed.weight / bed.rho * float(measure @ (-np.expm1(-rate * t) / rate))
     own = sph_operators.transform(bed.kernel, 3, k * bed.smoothing)
     seen = own > 1e-6  # waves that the fluid's own kernel does not see have no pressure
     settled = np.where(seen, -np.expm1(-((c_s * k * own) ** 2) / rate * t) / np.where(seen, own, 1.0), 0.0)
@@ -168,7 +168,7 @@ class State:
         if corrected(run):  # equations (5) and (6)
             c_s = run.scene["fluid"]["sound_speed"]
             self.taken, share = own_marks(self.bed, hard_spheres, c_s, self.hindered, snapshot["time"])
-            self.law_corrected = self.bed.mean_slip(np.minimum(self.eps + share, 1.0), True, self.bed.phi * share)
+            self.law_corrected = self.bed.mean_slip(np.minimum(self.eps + share, 1.0), True)
         self.predicted_slip = self.law_corrected + self.taken - self.predicted
 
     @property
