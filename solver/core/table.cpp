@@ -129,6 +129,14 @@ std::vector<std::string> Table::texts(std::string_view key) {
     return values;
 }
 
+std::vector<double> Table::numbers(std::string_view key, const Range& range) {
+    const toml::array* array = required(key, "an array of numbers").as_array();
+    if (array == nullptr) fail(key, "expected an array of numbers");
+    std::vector<double> values;
+    for (const toml::node& node : *array) values.push_back(checked(key, node, range));
+    return values;
+}
+
 Vec3 Table::vector(std::string_view key, const Range& range) { return components(key, 3, range); }
 
 Vec3 Table::components(std::string_view key, int dimensions, const Range& range) {

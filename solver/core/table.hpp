@@ -52,6 +52,8 @@ public:
     std::string text(std::string_view key);
     std::string text_or(std::string_view key, std::string_view absent);
     std::vector<std::string> texts(std::string_view key);
+    /// An array of any number of numbers.
+    std::vector<double> numbers(std::string_view key, const Range& range = any_number);
     Vec3 vector(std::string_view key, const Range& range = any_number);
     std::array<bool, 3> flags(std::string_view key);
     /// Two or three numbers, or flags, as the scene has dimensions; the third is 0 (false) in the plane.

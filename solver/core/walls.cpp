@@ -25,8 +25,11 @@ Vec3 direction(Table& table, std::string_view key) {
 
 Plane::Plane(Table& table) : point(components(table, "point")), normal(direction(table, "normal")) {}
 
-Box::Box(Table& table) : lower(components(table, "lower")), upper(components(table, "upper")) {
-    if (table.length("lower") == 2) { // no faces across the plane
+namespace {
+
+/// Faces of a box from its table; none across the plane.
+void read_faces(const Table& table, Vec3& lower, Vec3& upper) {
+    if (table.length("lower") == 2) {
         lower[2] = -std::numeric_limits<double>::infinity();
         upper[2] = -lower[2];
     }
@@ -34,6 +37,16 @@ Box::Box(Table& table) : lower(components(table, "lower")), upper(components(tab
         if (!(lower[c] < upper[c]))
             table.fail("upper", fmt::format("component {} is {}, not above lower, {}",
                                             axis_names[static_cast<std::size_t>(c)], upper[c], lower[c]));
+}
+
+} // namespace
+
+Box::Box(Table& table) : lower(components(table, "lower")), upper(components(table, "upper")) {
+    read_faces(table, lower, upper);
+}
+
+SolidBox::SolidBox(Table& table) : lower(components(table, "lower")), upper(components(table, "upper")) {
+    read_faces(table, lower, upper);
 }
 
 Cylinder::Cylinder(Table& table)

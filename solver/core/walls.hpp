@@ -75,7 +75,30 @@ struct Cylinder {
     }
 };
 
-using Wall = std::variant<Plane, Box, Cylinder, TriangleMesh>;
+/// The outside of an axis-aligned box, whose edges and corners are sharp: one contact at a time.
+struct SolidBox {
+    static constexpr std::string_view name = "solid_box";
+    static constexpr LawInfo info{"distance to the nearest point of the box, negative inside", "any centre", "-"};
+    explicit SolidBox(Table& table);
+    Vec3 lower, upper; // [m]
+
+    template <class Visit> void touch(const Vec3& x, double reach, Visit&& visit) const {
+        const Vec3 away = x - x.cwiseMax(lower).cwiseMin(upper);
+        const double outside = away.norm();
+        if (outside > 0.0) {
+            if (outside < reach) visit(WallPoint{away / outside, outside, 0});
+            return;
+        }
+        Eigen::Index below = 0, above = 0; // the axes of the nearest faces
+        const double to_lower = (x - lower).minCoeff(&below), to_upper = (upper - x).minCoeff(&above);
+        if (to_lower < to_upper)
+            visit(WallPoint{-Vec3::Unit(below), -to_lower, 0});
+        else
+            visit(WallPoint{Vec3::Unit(above), -to_upper, 0});
+    }
+};
+
+using Wall = std::variant<Plane, Box, SolidBox, Cylinder, TriangleMesh>;
 
 /// One wall of the scene. It moves without turning: at time t it is displaced by velocity * t.
 struct WallBody {

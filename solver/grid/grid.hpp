@@ -110,4 +110,8 @@ inline Axis even_axis(double length, int cells, bool periodic) {
     return axis;
 }
 
+/// Cells whose width goes linearly from each of the places `at` [m] to the next, `width` [m] there, over [0,
+/// at.back()]; all are narrowed by the one factor that makes their number whole.
+Axis stretched_axis(const std::vector<double>& at, const std::vector<double>& width, bool periodic);
+
 } // namespace plumb

@@ -40,7 +40,21 @@ GridSide& name_side(GridFluid& f, std::vector<std::string>& named, const SideNum
     return f.sides[number.axis][number.end];
 }
 
-/// One spacing, or one along each axis [m].
+/// An axis whose cells are `times` the spacing wide at the places `at`, and in between linearly.
+Axis read_stretch(Table& fluid, const std::string& key, const GridFluid& f, std::size_t c, double spacing) {
+    Table table = fluid.table(key);
+    const double length = f.domain.size[static_cast<Eigen::Index>(c)];
+    const std::vector<double> at = table.numbers("at");
+    std::vector<double> times = table.numbers("times", positive);
+    if (at.size() < 2 || at.size() != times.size())
+        table.fail("times", "expected as many numbers as in `at`, 2 at least");
+    if (at.front() != 0.0 || at.back() != length || !std::is_sorted(at.begin(), at.end(), std::less_equal<>()))
+        table.fail("at", fmt::format("expected ascending places from 0 to {}, the length of the box", length));
+    for (double& t : times) t *= spacing;
+    return stretched_axis(at, times, f.domain.periodic[c]);
+}
+
+/// One spacing, or one along each axis [m]; `stretch_x`, `stretch_y` and `stretch_z` widen the cells of theirs.
 void read_axes(Table& table, GridFluid& f) {
     const bool alike = table.type("spacing") != toml::node_type::array;
     const Vec3 spacing = alike ? Vec3::Constant(table.number("spacing", positive))
@@ -48,6 +62,11 @@ void read_axes(Table& table, GridFluid& f) {
     double count = 1.0;
     for (std::size_t c = 0; c < f.dimensions(); ++c) {
         const auto k = static_cast<Eigen::Index>(c);
+        if (const std::string key = fmt::format("stretch_{}", axis_names[c]); table.has(key)) {
+            f.grid.axis[c] = read_stretch(table, key, f, c, spacing[k]);
+            count *= f.grid.axis[c].cells();
+            continue;
+        }
         const double length = f.domain.size[k], cells = length / spacing[k];
         count *= cells;
         if (std::abs(cells - std::nearbyint(cells)) > 1e-6 * cells || cells < 0.5 || count > 1e8)

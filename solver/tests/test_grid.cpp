@@ -42,6 +42,20 @@ template <class Exact> double error(const GridFluid& f, std::size_t c, Exact&& e
     return std::sqrt(sum / static_cast<double>(f.u[c].size()));
 }
 
+// Widths that double over a metre and stay: nodes by hand, n = ln(width ratio)/slope.
+TEST(Grid, StretchedAxisHasTheAskedWidths) {
+    const Axis axis = stretched_axis({0.0, 1.0, 2.0}, {0.1, 0.2, 0.2}, false);
+    const double cells = std::log(2.0) / 0.1 + 5.0; // 11.93: twelve, narrower by 0.6 %
+    ASSERT_EQ(axis.cells(), 12);
+    EXPECT_EQ(axis.node.front(), 0.0);
+    EXPECT_EQ(axis.node.back(), 2.0);
+    EXPECT_NEAR(axis.width(11), 0.2 * cells / 12.0, 1e-12);
+    EXPECT_NEAR(axis.node[1], std::expm1(0.1 * cells / 12.0), 1e-12);
+    for (int k = 1; k < 12; ++k) EXPECT_GE(axis.width(k), axis.width(k - 1) * (1.0 - 1e-12));
+    const Axis even = stretched_axis({0.0, 3.0}, {0.5, 0.5}, false);
+    for (std::size_t k = 0; k < 7; ++k) EXPECT_NEAR(even.node[k], 0.5 * static_cast<double>(k), 1e-14);
+}
+
 // Taylor and Green's vortex decays as exp(-2 k^2 nu t): second order in space and time together.
 TEST(Grid, TaylorGreenVortexIsOfSecondOrder) {
     std::vector<double> errors;

@@ -73,6 +73,26 @@ TEST(Box, TouchesUpToThreeFaces) {
     EXPECT_THROW(shape_of<Box>("lower = [0, 0, 0]\nupper = [1, 0, 3]"), InputError);
 }
 
+TEST(SolidBox, NearestPointIsOnAFaceAnEdgeOrACorner) {
+    const auto box = shape_of<SolidBox>("lower = [0, 0, 0]\nupper = [1, 2, 3]");
+    auto found = touched(box, {0.5, 2.25, 1.0}, 0.3);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_DOUBLE_EQ(found[0].distance, 0.25);
+    EXPECT_EQ(found[0].normal, Vec3::UnitY());
+    found = touched(box, {1.3, 2.4, 1.0}, 1.0); // an edge, 0.3 and 0.4 away
+    EXPECT_DOUBLE_EQ(found.at(0).distance, 0.5);
+    EXPECT_TRUE(found[0].normal.isApprox(Vec3(0.6, 0.8, 0.0)));
+    found = touched(box, {-2.0, -1.0, -2.0}, 4.0); // a corner
+    EXPECT_DOUBLE_EQ(found.at(0).distance, 3.0);
+    found = touched(box, {0.9, 1.0, 1.5}, 0.0); // inside: the nearest face
+    EXPECT_NEAR(found.at(0).distance, -0.1, 1e-15);
+    EXPECT_EQ(found[0].normal, Vec3::UnitX());
+    EXPECT_TRUE(touched(box, {0.5, 2.25, 1.0}, 0.2).empty());
+    const auto plane = shape_of<SolidBox>("lower = [0, 0]\nupper = [1, 2]"); // across the plane without end
+    EXPECT_NEAR(touched(plane, {1.3, 2.4, 1e9}, 1.0).at(0).distance, 0.5, 1e-15);
+    EXPECT_NEAR(touched(plane, {0.9, 1.0, -7.0}, 1.0).at(0).distance, -0.1, 1e-15);
+}
+
 TEST(Cylinder, InsideAndOutside) {
     // Axis along (0, 1, 1)/sqrt 2 through (1, 0, 0); (1, 1, -1) t is across it at distance sqrt 2 t.
     const std::string_view common = "point = [1, 0, 0]\naxis = [0, 2, 2]\nradius = 2.0\n";
