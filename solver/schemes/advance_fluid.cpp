@@ -135,11 +135,15 @@ void correct(SphFluid& f, double dt, std::int64_t step) {
         });
         add(f.rho, cluster, interval * load(f.drho, cluster));
         if (shift > 0.0) shift_particles(f, cluster, shift);
-        Pack own = load(f.rho, cluster);
-        if (f.among_grains()) own *= load(f.share, cluster) / load(f.eps, cluster);
-        const Pack change = own - broadcast<Pack>(f.density);
-        const PackMask sound = (speed_sq <= broadcast<Pack>(slow)) & // written so that NaN fails
-                               (change <= broadcast<Pack>(half)) & (change >= broadcast<Pack>(-half));
+        const auto near = [&](const Pack& rho) { // to the fluid's density, written so that NaN is not
+            const Pack change = rho - broadcast<Pack>(f.density);
+            return (change <= broadcast<Pack>(half)) & (change >= broadcast<Pack>(-half));
+        };
+        // A particle that goes into a bed takes more room, one of pure mass starts in one with too little.
+        const Pack rho = load(f.rho, cluster);
+        PackMask sound = near(rho);
+        if (f.among_grains()) sound |= near(rho * load(f.share, cluster) / load(f.eps, cluster));
+        sound &= speed_sq <= broadcast<Pack>(slow);
         if (!any(~sound)) return;
         for (int lane = 0; lane < pack_width; ++lane)
             if (sound[lane] == 0)
