@@ -12,7 +12,8 @@ namespace plumb {
 
 namespace {
 
-constexpr double on_side = 1e-9; // times the box: how near to a side a plane has to be to be it
+constexpr double most_cells = 1e8; // in all: their numbers, and those of their faces, have to fit an int
+constexpr double on_side = 1e-9;   // times the box: how near to a side a plane has to be to be it
 
 /// The side of the box that a plane through `point` with `normal` into the fluid is, or nothing.
 struct SideNumber {
@@ -51,6 +52,9 @@ Axis read_stretch(Table& fluid, const std::string& key, const GridFluid& f, std:
     if (at.front() != 0.0 || at.back() != length || !std::is_sorted(at.begin(), at.end(), std::less_equal<>()))
         table.fail("at", fmt::format("expected ascending places from 0 to {}, the length of the box", length));
     for (double& t : times) t *= spacing;
+    const double least = *std::min_element(times.begin(), times.end());
+    if (length / least > most_cells)
+        table.fail("times", fmt::format("cells of {:.4g} m make more than {:.0e} along the axis", least, most_cells));
     return stretched_axis(at, times, f.domain.periodic[c]);
 }
 
@@ -69,13 +73,14 @@ void read_axes(Table& table, GridFluid& f) {
         }
         const double length = f.domain.size[k], cells = length / spacing[k];
         count *= cells;
-        if (std::abs(cells - std::nearbyint(cells)) > 1e-6 * cells || cells < 0.5 || count > 1e8)
+        if (std::abs(cells - std::nearbyint(cells)) > 1e-6 * cells || cells < 0.5 || count > most_cells)
             table.fail("spacing",
                        fmt::format("the box measures {:.9g} spacings along {}; a whole number is needed, and "
                                    "no more than 1e8 cells in all",
                                    cells, axis_names[c]));
         f.grid.axis[c] = even_axis(length, static_cast<int>(std::lround(cells)), f.domain.periodic[c]);
     }
+    if (count > most_cells) table.fail("spacing", fmt::format("{:.3g} cells; {:.0e} are possible", count, most_cells));
     if (f.grid.dimensions == 2) f.grid.axis[2] = even_axis(1.0, 1, false);
 }
 

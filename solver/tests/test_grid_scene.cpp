@@ -43,6 +43,8 @@ TEST(GridScene, WhatCannotBeMeantIsRefused) {
                    {"stretch_x.at", "from 0 to 2"});
     expect_refused(changed("spacing = 0.0625", "spacing = 0.0625\nstretch_x = {at = [0.0, 2.0], times = [1.0]}"),
                    {"stretch_x.times"});
+    expect_refused(changed("spacing = 0.0625", "spacing = 0.0625\nstretch_x = {at = [0.0, 2.0], times = [1e-9, 1e-9]}"),
+                   {"stretch_x.times", "cells"});
     expect_refused(changed("viscosity = 0.02", "viscosity = 0.0"), {"fluid.viscosity"});
     expect_refused(changed("\"central\"", "\"quick\""), {"fluid.advection", "quick", "upwind"});
     expect_refused(changed("point = [2.0, 0.5]", "point = [1.9, 0.5]"), {"outlet", "point", "no side"});
