@@ -64,6 +64,13 @@ std::size_t product(const Shape& shape) {
     return count;
 }
 
+/// How objects of a class are made: without the time of day that the library would put into their headers.
+Hdf5Handle without_times(hid_t of_class) {
+    Hdf5Handle how(H5Pcreate(of_class), H5Pclose);
+    H5Pset_obj_track_times(how.get(), false);
+    return how;
+}
+
 } // namespace
 
 bool Hdf5Handle::close() {
@@ -76,10 +83,10 @@ Hdf5Writer::Hdf5Writer(std::string path, bool checked)
 
 Hdf5Handle Hdf5Writer::created_file() const {
     prepare_library();
-    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose), creation = without_times(H5P_FILE_CREATE);
     // Since version 1.10 of the format the library's own records carry checksums too.
     if (checked_) H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_LATEST);
-    Hdf5Handle file(H5Fcreate(aside_name(path_).c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
+    Hdf5Handle file(H5Fcreate(aside_name(path_).c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
     if (!file.valid()) fail();
     return file;
 }
@@ -95,10 +102,8 @@ void Hdf5Writer::fail() const { throw IoError(fmt::format("{}: cannot be written
 void Hdf5Writer::write_raw(const std::string& name, const void* data, std::size_t count, hid_t type,
                            const Shape& shape) {
     assert(count == product(shape));
-    const Hdf5Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
-    H5Pset_create_intermediate_group(links.get(), 1);
-    const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(layout.get(), false);
+    make_groups(name);
+    const Hdf5Handle layout = without_times(H5P_DATASET_CREATE);
     if (checked_ && count > 0) {
         std::vector<hsize_t> chunk(shape.begin(), shape.end());
         chunk[0] = std::min<hsize_t>(chunk[0], std::max<hsize_t>(1, 65536 * chunk[0] / count)); // about half a megabyte
@@ -106,7 +111,7 @@ void Hdf5Writer::write_raw(const std::string& name, const void* data, std::size_
         H5Pset_fletcher32(layout.get());
     }
     const Hdf5Handle space = space_of(shape);
-    Hdf5Handle set(H5Dcreate2(file_.get(), name.c_str(), type, space.get(), links.get(), layout.get(), H5P_DEFAULT),
+    Hdf5Handle set(H5Dcreate2(file_.get(), name.c_str(), type, space.get(), H5P_DEFAULT, layout.get(), H5P_DEFAULT),
                    H5Dclose);
     if (!set.valid()) fail();
     if (count > 0 && H5Dwrite(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) fail();
@@ -127,9 +132,14 @@ void Hdf5Writer::write_bytes(const std::string& name, const std::string& text) {
     write_raw(name, text.data(), text.size(), H5T_NATIVE_UCHAR, {text.size()});
 }
 
-void Hdf5Writer::group(const std::string& name) {
-    const Hdf5Handle made(H5Gcreate2(file_.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
-    if (!made.valid()) fail();
+void Hdf5Writer::make_groups(const std::string& name) {
+    const Hdf5Handle plain = without_times(H5P_GROUP_CREATE);
+    for (std::size_t slash = name.find('/', 1); slash != std::string::npos; slash = name.find('/', slash + 1)) {
+        const std::string group = name.substr(0, slash);
+        if (H5Lexists(file_.get(), group.c_str(), H5P_DEFAULT) > 0) continue;
+        const Hdf5Handle made(H5Gcreate2(file_.get(), group.c_str(), H5P_DEFAULT, plain.get(), H5P_DEFAULT), H5Gclose);
+        if (!made.valid()) fail();
+    }
 }
 
 void Hdf5Writer::attribute_raw(const std::string& object, const std::string& name, hid_t type, const void* value) {

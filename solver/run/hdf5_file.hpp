@@ -54,7 +54,6 @@ public:
     }
     /// The bytes of a text as a dataset; checked as any other.
     void write_bytes(const std::string& name, const std::string& text);
-    void group(const std::string& name);
     /// Attribute `name` of the group or dataset `object` ("/" for the file).
     void attribute(const std::string& object, const std::string& name, const std::string& text);
     void attribute(const std::string& object, const std::string& name, double value);
@@ -63,6 +62,8 @@ public:
     void finish();
 
 private:
+    /// The groups that `name` lies in.
+    void make_groups(const std::string& name);
     void write_raw(const std::string& name, const void* data, std::size_t count, hid_t type, const Shape& shape);
     void attribute_raw(const std::string& object, const std::string& name, hid_t type, const void* value);
     Hdf5Handle created_file() const;
