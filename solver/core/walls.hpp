@@ -6,6 +6,7 @@
 // Walls have no periodic images: one that crosses a periodic side must itself reach from side to side.
 #pragma once
 
+#include "core/cylinder_rows.hpp"
 #include "core/laws.hpp"
 #include "core/triangle_mesh.hpp"
 #include "core/vec.hpp"
@@ -98,7 +99,7 @@ struct SolidBox {
     }
 };
 
-using Wall = std::variant<Plane, Box, SolidBox, Cylinder, TriangleMesh>;
+using Wall = std::variant<Plane, Box, SolidBox, Cylinder, CylinderRows, TriangleMesh>;
 
 /// One wall of the scene. It moves without turning: at time t it is displaced by velocity * t.
 struct WallBody {

@@ -67,7 +67,8 @@ template <class Visit> void for_each_place(const Block& block, Visit&& visit) {
             for (p[0] = 0; p[0] < block.n[0]; ++p[0]) visit(static_cast<const Place&>(p), k++);
 }
 
-/// Cells and faces. In the plane there is one cell of 1 m along z, which no equation looks at.
+/// Cells and faces. In the plane there is one cell along z, which no equation looks at: 1 m around z = 0, or the depth
+/// of a box of three dimensions in which nothing of the fluid depends on z.
 struct Grid {
     int dimensions = 2;
     std::array<Axis, 3> axis{};
@@ -87,15 +88,12 @@ struct Grid {
             if (d != c) area *= axis[d].width(p[d]);
         return area;
     }
-    Vec3 centre(const Place& p) const {
-        return {axis[0].centre(p[0]), axis[1].centre(p[1]), dimensions == 2 ? 0.0 : axis[2].centre(p[2])};
-    }
+    Vec3 centre(const Place& p) const { return {axis[0].centre(p[0]), axis[1].centre(p[1]), axis[2].centre(p[2])}; }
     Vec3 face_centre(std::size_t c, const Place& p) const {
         Vec3 x;
         for (std::size_t d = 0; d < 3; ++d)
             x[static_cast<Eigen::Index>(d)] =
                 d == c ? axis[d].node[static_cast<std::size_t>(p[d])] : axis[d].centre(p[d]);
-        if (dimensions == 2) x[2] = 0.0;
         return x;
     }
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace plumb {
@@ -18,6 +19,26 @@ template <class Term> double mean(const SphFluid& f, Term&& term) {
     const double sum =
         ordered_sum(slot.size(), 0.0, [&](std::size_t id) { return term(static_cast<std::size_t>(slot[id])); });
     return sum / static_cast<double>(slot.size());
+}
+
+void demand_grid(const Simulation& s, const Table& t) {
+    if (!s.grid) t.fail("quantity", "needs a fluid with method \"grid\"");
+}
+
+/// A place, of two numbers in a scene of two dimensions.
+Vec3 place(Table& table, std::string_view key, double third) {
+    Vec3 x = table.length(key) == 2 ? table.components(key, 2) : table.vector(key);
+    if (table.length(key) == 2) x[2] = third;
+    return x;
+}
+
+/// Visits the open cells with centres between two places.
+template <class Visit> void for_each_cell(const GridFluid& f, const Vec3& lower, const Vec3& upper, Visit&& visit) {
+    for_each_place(f.grid.cells(), [&](const Place& p, std::size_t k) {
+        const Vec3 x = f.grid.centre(p);
+        if (f.unknown_pressure[k] >= 0 && (x.array() >= lower.array()).all() && (x.array() <= upper.array()).all())
+            visit(p, k);
+    });
 }
 
 double speed_sq(const SphFluid& f, std::size_t k) {
@@ -81,6 +102,55 @@ double FluidVelocityWave::operator()(const Sample& s) const {
     const double k = 2.0 * std::numbers::pi * waves / s.simulation.grains.domain.size[static_cast<Eigen::Index>(along)];
     return 2.0 * fluid_mean(s.simulation, axis, along,
                             [&](double u, double x) { return u * (sine ? std::sin(k * x) : std::cos(k * x)); });
+}
+
+FluidMeanPressure::FluidMeanPressure(Table& table)
+    : lower(place(table, "lower", -std::numeric_limits<double>::infinity())),
+      upper(place(table, "upper", std::numeric_limits<double>::infinity())) {}
+void FluidMeanPressure::bind(const Simulation& s, const Table& t) const {
+    demand_grid(s, t);
+    int cells = 0;
+    for_each_cell(*s.grid, lower, upper, [&](const Place& /*p*/, std::size_t /*k*/) { ++cells; });
+    if (cells == 0) t.fail("upper", "no open cell has its centre between `lower` and `upper`");
+}
+double FluidMeanPressure::operator()(const Sample& s) const {
+    const GridFluid& f = *s.simulation.grid;
+    double sum = 0.0, volume = 0.0;
+    for_each_cell(f, lower, upper, [&](const Place& p, std::size_t k) {
+        const double open = f.open.cell[k] * f.grid.cell_volume(p);
+        sum += open * f.p[k];
+        volume += open;
+    });
+    return sum / volume;
+}
+
+void FluidGreatestPressure::bind(const Simulation& s, const Table& t) { demand_grid(s, t); }
+double FluidGreatestPressure::operator()(const Sample& s) const {
+    const GridFluid& f = *s.simulation.grid;
+    double greatest = -std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < f.p.size(); ++k)
+        if (f.unknown_pressure[k] >= 0) greatest = std::max(greatest, f.p[k]);
+    return greatest;
+}
+
+FluidFlowRate::FluidFlowRate(Table& table) : axis(axis_of(table, "axis")), at(table.number("at")) {}
+void FluidFlowRate::bind(const Simulation& s, const Table& t) {
+    demand_grid(s, t);
+    if (axis_names.find(Table(t).text("axis")) >= s.grid->dimensions()) t.fail("axis", "is no axis of the grid");
+}
+double FluidFlowRate::operator()(const Sample& s) const {
+    const GridFluid& f = *s.simulation.grid;
+    const Axis& along = f.grid.axis[axis];
+    int nearest = 0;
+    for (int k = 0; k < along.faces(); ++k)
+        if (std::abs(along.node[static_cast<std::size_t>(k)] - at) <
+            std::abs(along.node[static_cast<std::size_t>(nearest)] - at))
+            nearest = k;
+    double sum = 0.0;
+    for_each_place(f.grid.faces(axis), [&](const Place& p, std::size_t k) {
+        if (p[axis] == nearest && f.open.face[axis][k] > 0.0) sum += open_area(f, axis, p) * f.u[axis][k];
+    });
+    return sum;
 }
 
 } // namespace plumb

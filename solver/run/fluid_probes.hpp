@@ -49,4 +49,35 @@ struct FluidVelocityWave {
     double operator()(const Sample& s) const;
 };
 
+/// Keys `lower`, `upper`: a box; the cells whose centres lie in it.
+struct FluidMeanPressure {
+    static constexpr std::string_view name = "fluid_mean_pressure", units = "Pa";
+    static constexpr LawInfo info{"mean of p over the open volume of the cells with centres from `lower` to `upper`",
+                                  "grid", "definition"};
+    Vec3 lower, upper;
+    explicit FluidMeanPressure(Table& table);
+    void bind(const Simulation& s, const Table& t) const;
+    double operator()(const Sample& s) const;
+};
+
+struct FluidGreatestPressure {
+    static constexpr std::string_view name = "fluid_greatest_pressure", units = "Pa";
+    static constexpr LawInfo info{"max p", "grid", "definition"};
+    explicit FluidGreatestPressure(Table& /*table*/) {}
+    static void bind(const Simulation& s, const Table& t);
+    double operator()(const Sample& s) const;
+};
+
+/// Keys `axis`, `at` [m]: the row of faces nearest to a place.
+struct FluidFlowRate {
+    static constexpr std::string_view name = "fluid_flow_rate", units = "m3/s";
+    static constexpr LawInfo info{"sum of eps u[axis] over the open area of the faces nearest to `at`", "grid",
+                                  "definition"};
+    std::size_t axis;
+    double at;
+    explicit FluidFlowRate(Table& table);
+    static void bind(const Simulation& s, const Table& t);
+    double operator()(const Sample& s) const;
+};
+
 } // namespace plumb

@@ -81,7 +81,9 @@ void read_axes(Table& table, GridFluid& f) {
         f.grid.axis[c] = even_axis(length, static_cast<int>(std::lround(cells)), f.domain.periodic[c]);
     }
     if (count > most_cells) table.fail("spacing", fmt::format("{:.3g} cells; {:.0e} are possible", count, most_cells));
-    if (f.grid.dimensions == 2) f.grid.axis[2] = even_axis(1.0, 1, false);
+    if (f.grid.dimensions == 3) return;
+    const bool slab = f.domain.dimensions == 3;
+    f.grid.axis[2].node = slab ? std::vector<double>{0.0, f.domain.size[2]} : std::vector<double>{-0.5, 0.5};
 }
 
 /// What every fluid has, at rest everywhere.
@@ -153,6 +155,7 @@ void read_open_sides(GridFluid& f, std::vector<Table>& inlets, std::vector<Table
             if (p[number.axis] != at) return;
             Vec3 across = f.grid.face_centre(number.axis, p) - point;
             across[static_cast<Eigen::Index>(number.axis)] = 0.0;
+            if (f.grid.dimensions == 2) across[2] = 0.0;
             const double speed =
                 std::visit([&](const auto& law) { return law(across.norm(), f.grid.dimensions); }, profile);
             f.u[number.axis][k] = number.end == 0 ? speed : -speed;
@@ -166,6 +169,11 @@ void read_open_sides(GridFluid& f, std::vector<Table>& inlets, std::vector<Table
 }
 
 void check_sides(const Table& table, const GridFluid& f, const std::vector<std::string>& named) {
+    if (f.grid.dimensions < f.domain.dimensions && !f.domain.periodic[2])
+        for (const std::size_t end : {0, 1})
+            if (named[4 + end].empty() || f.sides[2][end].kind != GridSide::Kind::free_slip)
+                table.fail("dimensions", "a fluid that does not depend on z needs walls with slip = \"free_slip\" at "
+                                         "both ends of z, or a periodic z");
     for (std::size_t c = 0; c < f.dimensions(); ++c)
         for (std::size_t end = 0; end < 2; ++end)
             if (!f.domain.periodic[c] && named[2 * c + end].empty())
@@ -195,6 +203,7 @@ GridFluid read_grid_fluid(Table& table, const Domain& domain, const std::vector<
     f.domain = domain;
     f.grid.dimensions = domain.dimensions;
     table.choice("method", {"grid"});
+    if (domain.dimensions == 3) f.grid.dimensions = static_cast<int>(table.integer("dimensions", 2, 3));
     read_axes(table, f);
     read_numbers(table, f);
     std::vector<std::string> named(6);
