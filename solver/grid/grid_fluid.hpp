@@ -47,6 +47,10 @@ struct GridFluid {
     Field<double> p;   // by cell [Pa]
     Field<double> eps; // by cell
 
+    // what grains do to the fluid in the coming step, by face; empty without grains
+    Velocity drag; // per velocity [N s/m], implicit
+    Velocity push; // [N]
+
     // which faces and cells are solved for: their number, by face and cell, -1 where they are not
     std::array<std::vector<int>, 3> unknown;
     std::vector<int> unknown_pressure;
@@ -81,6 +85,10 @@ struct MomentumRows {
 
 /// Friction and what the mass flux of `carrier` carries, plus mass times `per_time` [1/s].
 MomentumRows momentum_rows(const GridFluid& fluid, std::size_t c, const Velocity& carrier, double per_time);
+
+/// Force of the friction of the present velocities on the control volumes of the faces, over the fluid fraction there
+/// [N].
+Field<double> friction_on_faces(const GridFluid& fluid, std::size_t c);
 
 /// div(eps u) over the cells by unknown velocities of component c [m2].
 RowMatrix divergence_rows(const GridFluid& fluid, std::size_t c);

@@ -44,6 +44,8 @@ Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, doubl
         });
         right.segment(at.begin[c], before.size()) = rows.mass.cwiseProduct(before) + rows.known +
                                                     f.density * f.body_force[static_cast<Eigen::Index>(c)] * rows.room;
+        if (!f.push[c].empty())
+            right.segment(at.begin[c], before.size()) += unknowns(f, c, [&](std::size_t k) { return f.push[c][k]; });
     }
     right.tail(s.known_divergence.size()) = -s.known_divergence;
     return right;

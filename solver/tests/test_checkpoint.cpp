@@ -63,6 +63,9 @@ std::vector<std::uint64_t> bits(const Simulation& s) {
             for (int c = 0; c < 3; ++c) put((*field)[at][c]);
         put(g.radius[at]), put(g.mass[at]), put(g.mobility[at]);
     }
+    if (s.grid)
+        for (std::size_t c = 0; c < s.grid->dimensions(); ++c)
+            for (const double u : s.grid->u[c]) put(u);
     if (!s.sph) return all;
     for (const auto field : {&BoundaryParticles::x, &BoundaryParticles::mirror})
         for (std::size_t c = 0; c < 2; ++c)
@@ -119,7 +122,8 @@ TEST_P(Checkpoint, RunsAreTheSameForAnyNumberOfThreads) {
     EXPECT_TRUE(found.same) << found.text;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint, testing::Values(dry, wet, flowing, passing, published, on_grid));
+INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint,
+                         testing::Values(dry, wet, flowing, passing, published, on_grid, grains_on_grid));
 
 std::string complaint(const std::string& path) {
     try {

@@ -52,7 +52,6 @@ TEST(GridScene, WhatCannotBeMeantIsRefused) {
     expect_refused(changed("point = [0.0, 1.0]", "point = [0.0, 0.0]"), {"upper end of y"});
     expect_refused(changed("periodic = [false, false]", "periodic = [true, false]"), {"point", "periodic"});
     expect_refused(changed("slip = \"no_slip\"\n[time]", "slip = \"free_slip\"\n[time]"), {"immersed", "cylinder"});
-    expect_refused(changed("[time]", "[[grains]]\nname = \"g\"\n[time]"), {"grid", "grains"});
     expect_refused(changed("integrator = \"bdf2\"", "integrator = \"midpoint\""),
                    {"time.integrator", "implicit_euler"});
 }
