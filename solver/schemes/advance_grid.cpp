@@ -45,7 +45,7 @@ Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, doubl
         right.segment(at.begin[c], before.size()) = rows.mass.cwiseProduct(before) + rows.known +
                                                     f.density * f.body_force[static_cast<Eigen::Index>(c)] * rows.room;
     }
-    right.tail(s.known_divergence.size()) = -s.known_divergence;
+    right.tail(s.known_divergence.size()) = -s.known_divergence - s.pressure_scale * porosity_gain(f, dt);
     return right;
 }
 
