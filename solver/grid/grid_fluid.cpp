@@ -1,5 +1,7 @@
 #include "grid/grid_fluid.hpp"
 
+#include <utility>
+
 namespace plumb {
 
 namespace {
@@ -84,6 +86,26 @@ Eigen::VectorXd known_divergence(const GridFluid& f) {
         });
     }
     return out;
+}
+
+void change_porosity(GridFluid& f, Field<double> eps) {
+    f.eps_before_2 = std::move(f.eps_before);
+    f.eps_before = std::move(f.eps);
+    f.eps = std::move(eps);
+}
+
+Eigen::VectorXd porosity_gain(const GridFluid& f, double dt) {
+    Eigen::VectorXd gain = Eigen::VectorXd::Zero(f.unknown_pressures);
+    if (f.eps_before.empty()) return gain;
+    const bool two = f.second_order && !f.eps_before_2.empty();
+    for_each_place(f.grid.cells(), [&](const Place& p, std::size_t k) {
+        const int row = f.unknown_pressure[k];
+        if (row < 0) return;
+        const double last = f.eps[k] - f.eps_before[k]; // as differences: nothing is gained where eps is at rest
+        const double rise = two ? 1.5 * last - 0.5 * (f.eps_before[k] - f.eps_before_2[k]) : last;
+        gain[row] = f.open.cell[k] * f.grid.cell_volume(p) * rise / dt;
+    });
+    return gain;
 }
 
 } // namespace plumb

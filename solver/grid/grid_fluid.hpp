@@ -45,7 +45,9 @@ struct GridFluid {
     Velocity u;        // unknown or, on sides that prescribe it, given
     Velocity u_before; // a step before, empty before the second step
     Field<double> p;   // by cell [Pa]
-    Field<double> eps; // by cell
+    Field<double> eps; // by cell, at the end of the last step; while a step is made, at its end
+    // one and two steps before eps; empty as long as they are not known, or where eps never changes
+    Field<double> eps_before, eps_before_2;
 
     // what grains do to the fluid in the coming step, by face; empty without grains
     Velocity drag; // per velocity [N s/m], implicit
@@ -95,5 +97,12 @@ RowMatrix divergence_rows(const GridFluid& fluid, std::size_t c);
 
 /// What prescribed velocities carry out of the cells [m3/s].
 Eigen::VectorXd known_divergence(const GridFluid& fluid);
+
+/// Called before a step with the porosity of its end; those of the steps before move on.
+void change_porosity(GridFluid& fluid, Field<double> eps);
+
+/// V d(eps)/dt of the cells at the end of a step of `dt` [m3/s], what their fluid gains: a backward difference over two
+/// steps where they are known and the fluid is of second order in time, else over one.
+Eigen::VectorXd porosity_gain(const GridFluid& fluid, double dt);
 
 } // namespace plumb

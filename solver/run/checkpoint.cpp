@@ -66,7 +66,8 @@ void write_grid(Hdf5Writer& file, const GridFluid& f) {
     for_each_grid_field(f, [&](const std::string& name, const Field<double>& field) {
         file.write(name, std::span<const double>(field), {field.size()});
     });
-    file.write("grid/two_steps", std::vector<std::int64_t>{f.u_before[0].empty() ? 0 : 1});
+    file.write("grid/two_steps",
+               std::vector<std::int64_t>{f.u_before[0].empty() ? 0 : 1, f.eps_before.empty() ? 0 : 1});
     file.write("grid/iterations", std::vector<std::int64_t>{f.iterations});
     file.write("grid/residual", std::vector<double>{f.greatest_residual});
 }
@@ -282,7 +283,9 @@ void Loader::load_sph(SphFluid& f) const {
 }
 
 void Loader::load_grid(GridFluid& f) const {
-    if (file_.integers("grid/two_steps").at(0) != 0) f.u_before = f.u;
+    const std::vector<std::int64_t> two_steps = integers("grid/two_steps", 2); // of the velocity, of the porosity
+    if (two_steps[0] != 0) f.u_before = f.u;
+    if (two_steps[1] != 0) f.eps_before = f.eps;
     for_each_grid_field(f, [&](const std::string& name, Field<double>& field) {
         const std::vector<double> values = doubles(name, field.size());
         field.assign(values.begin(), values.end());

@@ -47,7 +47,7 @@ Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, doubl
         if (!f.push[c].empty())
             right.segment(at.begin[c], before.size()) += unknowns(f, c, [&](std::size_t k) { return f.push[c][k]; });
     }
-    right.tail(s.known_divergence.size()) = -s.known_divergence;
+    right.tail(s.known_divergence.size()) = -s.known_divergence - s.pressure_scale * porosity_gain(f, dt);
     return right;
 }
 

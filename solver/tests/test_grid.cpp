@@ -114,5 +114,26 @@ TEST(Grid, CylinderArrayIsOfSecondOrder) {
     EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2.0, 0.3);
 }
 
+// Fluid at a changing eps in a pipe with one open end: what the cells lose leaves there. eps = 1 - b t^2 differs from
+// its backward difference over two steps by nothing, over one by b dt.
+TEST(Grid, FallingPorosityPushesTheFluidOut) {
+    for (const bool second_order : {true, false}) {
+        GridFluid f = box(8, 1, 1.0, 0.5, false, true);
+        f.sides[0][1].kind = GridSide::Kind::outflow;
+        f.second_order = second_order;
+        make_ready(f);
+        const double b = 2.0, dt = 0.05;
+        for (int step = 1; step <= 4; ++step) {
+            const double t = step * dt, eps = 1.0 - b * t * t;
+            change_porosity(f, Field<double>(8, eps));
+            advance_grid(f, dt, step);
+            const double rate = second_order && step > 1 ? 2.0 * b * t : 2.0 * b * (t - 0.5 * dt);
+            for_each_place(f.grid.faces(0), [&](const Place& p, std::size_t k) {
+                EXPECT_NEAR(eps * f.u[0][k], rate * f.grid.face_centre(0, p)[0], 1e-7) << step;
+            });
+        }
+    }
+}
+
 } // namespace
 } // namespace plumb
