@@ -1,5 +1,7 @@
 #include "grid/multigrid.hpp"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 
@@ -78,7 +80,7 @@ Multigrid::Multigrid(const RowMatrix& matrix, int sweeps) : sweeps_(sweeps) {
         fine = joined(half, second);
     }
     add_level(fine);
-    if (fine.size() <= few) coarsest_.compute(full_matrix(fine));
+    if (fine.size() <= few) coarsest_ = full_matrix(fine).partialPivLu().inverse();
 }
 
 void Multigrid::add_level(const Equations& a) {
@@ -173,8 +175,7 @@ void Multigrid::krylov(std::size_t level, const Slices& matrix, double reduction
 void Multigrid::solve_coarsest(Level& l) const {
     const auto n = static_cast<Eigen::Index>(l.rows);
     if (n == 0) return;
-    const Eigen::VectorXd x =
-        coarsest_.solve(Eigen::Map<const Eigen::VectorXf>(l.right.data() + lanes, n).cast<double>());
+    const Eigen::VectorXd x = coarsest_ * Eigen::Map<const Eigen::VectorXf>(l.right.data() + lanes, n).cast<double>();
     for (std::size_t k = 0; k < l.rows; ++k) l.x[k + lanes] = static_cast<float>(x[static_cast<Eigen::Index>(k)]);
 }
 

@@ -9,8 +9,6 @@
 
 #include "grid/slices.hpp"
 
-#include <Eigen/LU>
-
 #include <optional>
 
 namespace plumb {
@@ -44,7 +42,7 @@ private:
     int sweeps_;
     std::optional<Slices> given_; // the finest level's matrix, where some couplings are positive
     std::vector<Level> levels_;
-    Eigen::PartialPivLU<Eigen::MatrixXd> coarsest_;
+    Eigen::MatrixXd coarsest_; // inverse of the coarsest level's matrix, where that is small
 };
 
 } // namespace plumb
