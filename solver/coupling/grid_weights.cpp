@@ -183,14 +183,16 @@ Vec3 gathered_velocity(const GridWeights& w, const Velocity& u, std::size_t j) {
     return v;
 }
 
-std::int64_t set_porosity(GridFluid& f, const GridWeights& w, const std::vector<double>& volume, double least) {
+BoundedPorosity porosity(const GridFluid& f, const GridWeights& w, const std::vector<double>& volume, double least) {
     std::vector<double> solid(f.eps.size(), 0.0);
     for (std::size_t j = 0; j < volume.size(); ++j)
         w.cells.spread(j, [&](std::size_t k, double weight) { solid[k] += weight * volume[j]; });
-    const std::int64_t full = relieve(f, w.cell_volume, 1.0 - least, solid);
+    BoundedPorosity found;
+    found.bounded = relieve(f, w.cell_volume, 1.0 - least, solid);
+    found.eps.assign(solid.size(), 1.0);
     for (std::size_t k = 0; k < solid.size(); ++k)
-        f.eps[k] = w.cell_volume[k] > 0.0 ? std::max(1.0 - solid[k] / w.cell_volume[k], least) : 1.0;
-    return full;
+        if (w.cell_volume[k] > 0.0) found.eps[k] = std::max(1.0 - solid[k] / w.cell_volume[k], least);
+    return found;
 }
 
 namespace {

@@ -50,10 +50,16 @@ void set_weights(GridWeights& weights, const GridFluid& fluid, const std::vector
 /// u_j = sum_a P_aj u_a, component by component [m/s].
 Vec3 gathered_velocity(const GridWeights& weights, const Velocity& u, std::size_t j);
 
+/// Fluid fractions by cell, and how many cells would have had less than they may.
+struct BoundedPorosity {
+    Field<double> eps;
+    std::int64_t bounded = 0;
+};
+
 /// eps_a = 1 - sum_j V_j P_aj/V_a for grains of `volume` [m3] by id. Where it is less than `least`, what is too much
-/// goes to the open neighbours, from cell to cell until there is room; returns how many cells were below.
-std::int64_t set_porosity(GridFluid& fluid, const GridWeights& weights, const std::vector<double>& volume,
-                          double least);
+/// goes to the open neighbours, from cell to cell until there is room.
+BoundedPorosity porosity(const GridFluid& fluid, const GridWeights& weights, const std::vector<double>& volume,
+                         double least);
 
 /// What the fluid is at the grains, by cell; the grains' weights for it are those of the porosity, so that what the
 /// gradient pushes in both together is the whole of it.

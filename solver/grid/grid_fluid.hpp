@@ -69,6 +69,9 @@ struct GridFluid {
 /// are there.
 void number_unknowns(GridFluid& fluid);
 
+/// Whether the fluid can leave by some side.
+bool has_outflow(const GridFluid& fluid);
+
 /// Mean of eps on either side of a face.
 double face_eps(const GridFluid& fluid, std::size_t c, const Place& face);
 

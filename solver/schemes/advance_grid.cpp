@@ -63,7 +63,8 @@ void advance_grid(GridFluid& f, double dt, std::int64_t step) {
         x.segment(at.begin[c], f.unknowns[c]) = unknowns(f, c, [&](std::size_t k) { return carrier[c][k]; });
     for (std::size_t k = 0; k < f.p.size(); ++k)
         if (f.unknown_pressure[k] >= 0) x[at.begin[3] + f.unknown_pressure[k]] = f.p[k] / s.pressure_scale;
-    const SolveReport report = solve(s, ProjectionPreconditioner(s), right, f.residual, most_iterations, x);
+    ProjectionPreconditioner preconditioner(s);
+    const SolveReport report = solve(s, preconditioner, right, f.residual, most_iterations, x);
     f.iterations += report.iterations;
     f.greatest_residual = std::max(f.greatest_residual, report.residual);
     const double time = dt * static_cast<double>(step);

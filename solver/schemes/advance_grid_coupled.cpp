@@ -38,9 +38,9 @@ bool is_dry(const GridCoupling& c, std::size_t id) {
 }
 
 /// Fluid fraction at a grain, with its own part in it or without.
-double gathered_porosity(const GridCoupling& c, const GridFluid& fluid, std::size_t id) {
+double gathered_porosity(const GridCoupling& c, std::size_t id) {
     const GridWeights& w = c.weights;
-    double eps = w.cells.gathered(id, 0.0, [&](std::size_t k) { return fluid.eps[k]; });
+    double eps = w.cells.gathered(id, 0.0, [&](std::size_t k) { return c.eps[k]; });
     if (!c.own_volume)
         w.cells.spread(
             id, [&](std::size_t k, double weight) { eps += c.places.volume[id] * weight * weight / w.cell_volume[k]; });
@@ -63,7 +63,7 @@ void gather(const GridCoupling& c, const GridFluid& fluid, GatheredFluid& at, bo
         if (at.dry[id] != 0) return;
         const SparseColumns& cells = c.weights.cells;
         at.u[id] = gathered_velocity(c.weights, fluid.u, id);
-        at.eps[id] = gathered_porosity(c, fluid, id);
+        at.eps[id] = gathered_porosity(c, id);
         if (!fields.stress.empty())
             at.stress[id] = cells.gathered(id, Vec3(Vec3::Zero()), [&](std::size_t k) { return fields.stress[k]; });
         if (at.wants_gradient)
@@ -192,13 +192,19 @@ void settle(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, 
 void couple(GridCoupling& c, GridFluid& fluid, const GrainSystem& grains) {
     measure(c.weights, fluid);
     set_places(c, fluid, grains, 0.0);
-    c.bounded += set_porosity(fluid, c.weights, c.places.volume, c.least_porosity);
+    BoundedPorosity found = porosity(fluid, c.weights, c.places.volume, c.least_porosity);
+    c.bounded += found.bounded;
+    c.eps = std::move(found.eps);
+    if (c.two_way) fluid.eps = c.eps;
 }
 
 void advance_grid_coupled(GridCoupling& c, GridFluid& fluid, FluidOnGrains& f, GrainSystem& grains, double dt,
                           std::int64_t step) {
     set_places(c, fluid, grains, 0.5 * dt);
-    c.bounded += set_porosity(fluid, c.weights, c.places.volume, c.least_porosity);
+    BoundedPorosity found = porosity(fluid, c.weights, c.places.volume, c.least_porosity);
+    c.bounded += found.bounded;
+    c.eps = std::move(found.eps);
+    if (c.two_way) change_porosity(fluid, c.eps);
     gather(c, fluid, f.at_grains, needs_stress(f));
     const std::vector<LinearDrag> drag = foresee(c, f, grains, dt);
     if (c.two_way) push_fluid(c, fluid, drag, dt);

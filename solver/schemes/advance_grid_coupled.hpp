@@ -16,6 +16,7 @@ struct GridCoupling {
     std::int64_t grain_steps = 1; // in one of the fluid
 
     GrainPlaces places; // half a step ahead, by id
+    Field<double> eps;  // by cell, of these places; the fluid's own where it feels the grains
 
     // by id, over the steps
     std::vector<Vec3> owed; // what a grain has received and the fluid has not given yet, or the reverse [kg m/s]

@@ -194,6 +194,8 @@ void make_grid_coupled(Table& root, Simulation& s) {
     Table coupling = root.table("coupling"), time = root.table("time"), fluid = root.table("fluid");
     s.grid_coupling = read_grid_coupling(coupling, *s.grid, s.grains);
     s.fluid = fluid_on_grains(coupling, *s.grid, fluid.text("pressure") == "full");
+    if (!s.grains.injectors.empty() && !has_outflow(*s.grid))
+        root.fail("injector", "the fluid that injected grains displace has no outlet to leave by");
     couple(*s.grid_coupling, *s.grid, s.grains);
     drive(coupling, *s.grid, *s.fluid, *s.grid_coupling, s.grains);
     s.timing = timing(time, grid_limits(*s.grid), probe_intervals(root));

@@ -2,6 +2,7 @@
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "run/checkpoint.hpp"
+#include "run/checkpoint_fields.hpp"
 #include "run/diff.hpp"
 #include "run/hdf5_file.hpp"
 #include "run/time_loop.hpp"
@@ -64,8 +65,9 @@ std::vector<std::uint64_t> bits(const Simulation& s) {
         put(g.radius[at]), put(g.mass[at]), put(g.mobility[at]);
     }
     if (s.grid)
-        for (std::size_t c = 0; c < s.grid->dimensions(); ++c)
-            for (const double u : s.grid->u[c]) put(u);
+        for_each_grid_field(*s.grid, [&](const std::string&, const Field<double>& field) {
+            for (const double x : field) put(x);
+        });
     if (!s.sph) return all;
     for (const auto field : {&BoundaryParticles::x, &BoundaryParticles::mirror})
         for (std::size_t c = 0; c < 2; ++c)

