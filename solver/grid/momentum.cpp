@@ -8,16 +8,19 @@
 #include "grid/grid_fluid.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace plumb {
 
 namespace {
 
-/// One row while it is made.
+/// One row while it is made. What second upstream neighbours carry is kept apart, so that the preconditioner can do
+/// without them.
 struct Row {
-    std::array<std::pair<int, double>, 13> entry{}; // neighbours by friction and by what is carried, and itself
-    std::size_t size = 0;
-    double diagonal = 0.0, known = 0.0;
+    using Entry = std::pair<int, double>;
+    std::array<Entry, 12> near{}, far{}; // of each of six sides two; `far`: second upstream, and what it changes
+    std::size_t nears = 0, fars = 0;
+    double diagonal = 0.0, far_diagonal = 0.0, known = 0.0;
 
     /// Adds `coefficient` (neighbour - own) to the force on the control volume; the neighbour is an unknown or, with
     /// column < 0, has the value given.
@@ -26,7 +29,14 @@ struct Row {
         if (column < 0)
             known += coefficient * value;
         else
-            entry[size++] = {column, -coefficient};
+            near[nears++] = {column, -coefficient};
+    }
+    void couple_far(int column, double coefficient, double value) {
+        far_diagonal += coefficient;
+        if (column < 0)
+            known += coefficient * value;
+        else
+            far[fars++] = {column, -coefficient};
     }
 };
 
@@ -37,6 +47,7 @@ public:
 
     Row row(const Place& p) const {
         Row made;
+        resist(p, made);
         for (const int way : {0, 1}) {
             along(p, way, made);
             for (std::size_t d = 0; d < f.dimensions(); ++d)
@@ -75,9 +86,78 @@ private:
         return f.density * open_area(f, d, face) * flux_of[d][k];
     }
 
-    void carry(Row& row, double outward, int column, double value) const {
-        const double weight = std::visit([&](const auto& law) { return law(outward); }, f.advection);
-        row.couple(column, -outward * weight, value);
+    void couple(Row& row, const Place& face, double coefficient) const {
+        const std::size_t k = faces.at(face);
+        row.couple(f.unknown[c][k], coefficient, f.u[c][k]);
+    }
+
+    /// A face upstream of the upstream one, and how far the flux is from that over the distance of the two.
+    struct Second {
+        Place face{};
+        double reach = 0.0; // 0: there is none
+    };
+
+    void carry(Row& row, double outward, const Place& other, const Second& second) const {
+        const auto weight = [&](double reach) {
+            return std::visit([&](const auto& law) { return law(outward, reach); }, f.advection);
+        };
+        const Carried near = weight(0.0), all = weight(second.reach);
+        couple(row, other, -outward * near.next);
+        if (all.second == 0.0) return;
+        const std::size_t next = faces.at(other), beyond = faces.at(second.face);
+        row.couple_far(f.unknown[c][next], -outward * (all.next - near.next), f.u[c][next]);
+        row.couple_far(f.unknown[c][beyond], -outward * all.second, f.u[c][beyond]);
+    }
+
+    /// Upstream of `face` along the component's own axis, on the side `way`; the flux is in the middle of a cell of
+    /// width `across`.
+    Second second_along(const Place& face, int way, double across) const {
+        const int cell = way == 0 ? axis(c).cell_below(face[c]) : axis(c).cell_above(face[c]);
+        if (cell < 0) return {};
+        const Place beyond = with(face, c, way == 0 ? cell : axis(c).face_above(cell));
+        if (share(beyond) == 0.0 || f.open.cell[cells.at(with(face, c, cell))] == 0.0) return {};
+        return {beyond, 0.5 * across / axis(c).width(cell)};
+    }
+
+    /// Upstream of `face` along another axis.
+    Second second_across(const Place& face, std::size_t d, int way) const {
+        const int beyond = axis(d).next(face[d], way);
+        if (beyond < 0 || !edge_open(face, d, way)) return {};
+        const double width = axis(d).width(face[d]);
+        return {with(face, d, beyond), width / (width + axis(d).width(beyond))};
+    }
+
+    /// What the porous medium around a face takes: beta(|u|) u, linear around the carrier's speed as Newton's method
+    /// has it, which is of second order in time like the carrier and does not overshoot in long steps.
+    void resist(const Place& p, Row& row) const {
+        if (std::holds_alternative<NoResistance>(f.resistance)) return;
+        const double speed = face_speed(p);
+        for (const int cell : {axis(c).cell_below(p[c]), axis(c).cell_above(p[c])}) {
+            if (cell < 0) continue;
+            const std::size_t k = cells.at(with(p, c, cell));
+            const double volume = 0.5 * f.open.cell[k] * f.grid.cell_volume(with(p, c, cell));
+            const Resisted r =
+                std::visit([&](const auto& law) { return law(f.eps[k], speed, f.density, f.viscosity); }, f.resistance);
+            row.diagonal += (r.beta + r.rise) * volume;
+            row.known += r.rise * volume * flux_of[c][faces.at(p)];
+        }
+    }
+
+    /// Speed of the carrier at a face: other components are the mean of the four around it [m/s].
+    double face_speed(const Place& p) const {
+        double square = std::pow(flux_of[c][faces.at(p)], 2);
+        for (std::size_t d = 0; d < f.dimensions(); ++d) {
+            if (d == c) continue;
+            double sum = 0.0;
+            int count = 0;
+            for (const int a : {axis(c).cell_below(p[c]), axis(c).cell_above(p[c])}) {
+                if (a < 0) continue;
+                for (const int b : {p[d], axis(d).face_above(p[d])})
+                    sum += flux_of[d][f.grid.faces(d).at(with(with(p, c, a), d, b))], ++count;
+            }
+            square += std::pow(sum / count, 2);
+        }
+        return std::sqrt(square);
     }
 
     /// Through the middle of the cell on one side along the component's own axis.
@@ -90,11 +170,12 @@ private:
         const double own = share(p) * full, next = share(other) * full;
         if (volume > 0.0) {
             const double friction = f.viscosity * f.eps[cells.at(middle)] * own / volume;
-            row.couple(f.unknown[c][faces.at(other)], friction * next, f.u[c][faces.at(other)]);
+            couple(row, other, friction * next);
             row.diagonal += friction * (own - next); // the rest of the polygon's sides is a wall at rest
         }
         const double outward = (way == 0 ? -0.5 : 0.5) * (mass_flux(c, p) + mass_flux(c, other));
-        carry(row, outward, f.unknown[c][faces.at(other)], f.u[c][faces.at(other)]);
+        const double across = axis(c).width(cell);
+        carry(row, outward, other, outward < 0.0 ? second_along(other, way, across) : second_along(p, 1 - way, across));
     }
 
     /// Mean of eps in the up to four cells around an edge.
@@ -134,10 +215,9 @@ private:
             row.diagonal += friction / own;
         } else if (next >= 0) {
             const Place other = with(p, d, next);
-            const int column = f.unknown[c][faces.at(other)];
-            const double value = f.u[c][faces.at(other)];
-            row.couple(column, friction / (own + 0.5 * share(other) * axis(d).width(next)), value);
-            carry(row, outward_flux(p, d, way), column, value);
+            couple(row, other, friction / (own + 0.5 * share(other) * axis(d).width(next)));
+            const double outward = outward_flux(p, d, way);
+            carry(row, outward, other, outward < 0.0 ? second_across(other, d, way) : second_across(p, d, 1 - way));
         } else {
             at_side(p, d, way, friction / own, row);
         }
@@ -162,6 +242,33 @@ double outflow_force(const GridFluid& f, std::size_t c, const Place& p) {
     return 0.0;
 }
 
+/// The matrix of the rows, and that of their near entries alone where they have others.
+void fill(MomentumRows& made, const std::vector<Row>& rows) {
+    std::vector<Eigen::Triplet<double, int>> entries;
+    entries.reserve(13 * rows.size());
+    const auto size = static_cast<Eigen::Index>(rows.size());
+    const auto set = [&](RowMatrix& matrix) {
+        matrix.resize(size, size);
+        matrix.setFromTriplets(entries.begin(), entries.end());
+    };
+    bool far = false;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const auto at = static_cast<int>(k);
+        for (std::size_t e = 0; e < rows[k].nears; ++e)
+            entries.emplace_back(at, rows[k].near[e].first, rows[k].near[e].second);
+        entries.emplace_back(at, at, rows[k].diagonal);
+        far |= rows[k].fars > 0;
+    }
+    if (far) set(made.compact);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const auto at = static_cast<int>(k);
+        for (std::size_t e = 0; e < rows[k].fars; ++e)
+            entries.emplace_back(at, rows[k].far[e].first, rows[k].far[e].second);
+        if (rows[k].far_diagonal != 0.0) entries.emplace_back(at, at, rows[k].far_diagonal);
+    }
+    set(made.matrix);
+}
+
 } // namespace
 
 MomentumRows momentum_rows(const GridFluid& f, std::size_t c, const Velocity& carrier, double per_time) {
@@ -184,15 +291,9 @@ MomentumRows momentum_rows(const GridFluid& f, std::size_t c, const Velocity& ca
         made.mass[at] = maker.mass(p);
         made.room[at] = open_area(f, c, p) * f.grid.axis[c].dual_width(p[c]);
         made.known[at] = row.known + outflow_force(f, c, p);
-        row.entry[row.size++] = {static_cast<int>(k), row.diagonal + per_time * made.mass[at]};
+        row.diagonal += per_time * made.mass[at];
     });
-    std::vector<Eigen::Triplet<double, int>> entries;
-    entries.reserve(13 * n);
-    for (std::size_t k = 0; k < n; ++k)
-        for (std::size_t e = 0; e < rows[k].size; ++e)
-            entries.emplace_back(static_cast<int>(k), rows[k].entry[e].first, rows[k].entry[e].second);
-    made.matrix.resize(f.unknowns[c], f.unknowns[c]);
-    made.matrix.setFromTriplets(entries.begin(), entries.end());
+    fill(made, rows);
     return made;
 }
 

@@ -72,9 +72,10 @@ ProjectionPreconditioner::ProjectionPreconditioner(const SaddleSystem& system)
     for (std::size_t c = 0; c < system.dimensions; ++c) {
         const RowMatrix& a = system.momentum[c].matrix;
         inverse_diagonal_[c] = a.diagonal().cwiseInverse();
-        const RowMatrix transposed = a.transpose();
+        const RowMatrix& compact = system.momentum[c].compact.rows() > 0 ? system.momentum[c].compact : a;
+        const RowMatrix transposed = compact.transpose();
         velocity_[c] = std::make_unique<Factor>();
-        velocity_[c]->compute(Eigen::SparseMatrix<double>(0.5 * (a + transposed)));
+        velocity_[c]->compute(Eigen::SparseMatrix<double>(0.5 * (compact + transposed)));
         const RowMatrix scaled = inverse_diagonal_[c].asDiagonal() * system.gradient[c];
         const Eigen::SparseMatrix<double> part = system.divergence[c] * scaled;
         poisson = c == 0 ? part : Eigen::SparseMatrix<double>(poisson + part);

@@ -34,7 +34,8 @@ struct SaddleLayout {
 };
 SaddleLayout layout(const SaddleSystem& system);
 
-/// An approximate inverse: A by its symmetric part, factored, and the Schur complement D A^-1 D^T by
+/// An approximate inverse: A by its symmetric part (without second upstream neighbours, which would fill the factors),
+/// factored, and the Schur complement D A^-1 D^T by
 ///     S^-1 = L^-1 (D Q^-1 A Q^-1 D^T) L^-1,    L = D Q^-1 D^T,    Q = diag A
 /// (least-squares commutator: Elman et al. 2006, SIAM J. Sci. Comput. 27, 1651), which is a projection step where A is
 /// diagonal and knows friction, drag and advection where it is not.
