@@ -5,6 +5,7 @@
 
 #include "core/laws.hpp"
 #include "core/manufactured_flow.hpp"
+#include "core/manufactured_medium.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -198,8 +199,21 @@ private:
     }
 };
 
-using InitialField =
-    std::variant<RestField, UniformPressureField, TaylorGreenField, TaylorGreenCube, ShearWaveField, SoundWaveField,
-                 PulseField, HydrostaticField, RotatingSquareField, ChannelField, UniformField, ManufacturedField>;
+/// The flow of verification/mms_grid at t = 0.
+struct ManufacturedMediumField {
+    static constexpr std::string_view name = "manufactured_medium";
+    static constexpr LawInfo info{"eps u = curl psi + c (eps - mean), a moving wave of eps", "square box in the plane",
+                                  "verification/mms_grid, eq. 2"};
+    ManufacturedMedium flow;
+    explicit ManufacturedMediumField(Table& table) : flow(table) {}
+    FlowState operator()(const Vec3& x, const FluidNumbers& f) const {
+        const ManufacturedMedium::State s = flow.at(x, 0.0, f.size, f.density);
+        return {s.u, s.p};
+    }
+};
+
+using InitialField = std::variant<RestField, UniformPressureField, TaylorGreenField, TaylorGreenCube, ShearWaveField,
+                                  SoundWaveField, PulseField, HydrostaticField, RotatingSquareField, ChannelField,
+                                  UniformField, ManufacturedField, ManufacturedMediumField>;
 
 } // namespace plumb

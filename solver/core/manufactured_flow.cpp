@@ -1,5 +1,7 @@
 #include "core/manufactured_flow.hpp"
 
+#include "core/manufactured_medium.hpp"
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -69,6 +71,39 @@ ManufacturedFlow::State ManufacturedFlow::at(const Vec3& x, double t, const Flui
     const double scale = fluid.density * speed * speed;
     s.p = scale * p.value;
     s.p_rate = scale * w * p.rate;
+    s.p_gradient = scale * k * Vec3(p.x, p.y, 0.0);
+    return s;
+}
+
+// eps u = F: derivatives of u = F/eps by those of F and eps.
+ManufacturedMedium::State ManufacturedMedium::at(const Vec3& x, double t, const Vec3& size, double density) const {
+    const double k = 2.0 * std::numbers::pi / size[0], w = k * speed;
+    const Derivatives psi = sum_of(stream, k * x[0], k * x[1], w * t);
+    const Derivatives p = sum_of(pressure_waves, k * x[0], k * x[1], w * t);
+    const Vec3 number = k * porosity.waves; // wave vector of eps
+    const double omega = 2.0 * std::numbers::pi / porosity.period, angle = porosity.angle(x, t, size);
+    const Vec3 c = omega / number.squaredNorm() * number;
+    const double swing = porosity.amplitude * std::sin(angle), slope = porosity.amplitude * std::cos(angle);
+    const double eps = porosity.mean + swing, eps_rate = -omega * slope;
+    const Vec3 eps_gradient = slope * number;
+    const double eps_laplacian = -number.squaredNorm() * swing;
+
+    const Vec3 flux = speed * Vec3(psi.y, -psi.x, 0.0) + swing * c;
+    const Vec3 flux_rate = speed * w * Vec3(psi.y_rate, -psi.x_rate, 0.0) + eps_rate * c;
+    const Vec3 flux_x = speed * k * Vec3(psi.xy, -psi.xx, 0.0) + eps_gradient[0] * c;
+    const Vec3 flux_y = speed * k * Vec3(psi.yy, -psi.xy, 0.0) + eps_gradient[1] * c;
+    const Vec3 flux_laplacian = speed * k * k * Vec3(psi.lap_y, -psi.lap_x, 0.0) + eps_laplacian * c;
+
+    State s;
+    s.eps = eps;
+    s.u = flux / eps;
+    s.u_rate = (flux_rate - eps_rate * s.u) / eps;
+    const Vec3 by_x = (flux_x - eps_gradient[0] * s.u) / eps, by_y = (flux_y - eps_gradient[1] * s.u) / eps;
+    s.convection = s.u[0] * by_x + s.u[1] * by_y;
+    // lap F = eps lap u + 2 grad eps . grad u + u lap eps
+    s.friction = (flux_laplacian - eps_gradient[0] * by_x - eps_gradient[1] * by_y - eps_laplacian * s.u) / eps;
+    const double scale = density * speed * speed;
+    s.p = scale * p.value;
     s.p_gradient = scale * k * Vec3(p.x, p.y, 0.0);
     return s;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "core/laws.hpp"
+#include "core/named_axis.hpp"
 #include "coupling/local_fluid.hpp"
 
 #include <algorithm>
@@ -16,11 +17,6 @@
 namespace plumb {
 
 namespace detail {
-/// Index of the axis "x", "y" or "z" at `key`.
-inline Eigen::Index axis(Table& table, std::string_view key) {
-    return static_cast<Eigen::Index>(axis_names.find(table.choice(key, {"x", "y", "z"})));
-}
-
 /// The two axes of a unidirectional flow; InputError if they are the same (such a flow would not conserve mass).
 struct FlowAxes {
     Eigen::Index along, across;

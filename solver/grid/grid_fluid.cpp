@@ -1,5 +1,6 @@
 #include "grid/grid_fluid.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace plumb {
@@ -47,13 +48,30 @@ bool has_outflow(const GridFluid& f) {
     return false;
 }
 
+namespace {
+
+/// eps on a side of the box: continued linearly from the outermost cell and the next one (`way` inwards), within half
+/// of the outermost and 1.
+double side_eps(const GridFluid& f, std::size_t c, const Place& cell, int way) {
+    const Axis& axis = f.grid.axis[c];
+    const Block cells = f.grid.cells();
+    Place next = cell;
+    next[c] = axis.next(cell[c], way);
+    const double own = f.eps[cells.at(cell)];
+    if (next[c] < 0) return own;
+    const double width = axis.width(cell[c]), share = width / (width + axis.width(next[c]));
+    return std::clamp(own + share * (own - f.eps[cells.at(next)]), 0.5 * own, 1.0);
+}
+
+} // namespace
+
 double face_eps(const GridFluid& f, std::size_t c, const Place& face) {
     const Block cells = f.grid.cells();
     Place below = face, above = face;
     below[c] = f.grid.axis[c].cell_below(face[c]);
     above[c] = f.grid.axis[c].cell_above(face[c]);
-    if (below[c] < 0) return f.eps[cells.at(above)];
-    if (above[c] < 0) return f.eps[cells.at(below)];
+    if (below[c] < 0) return side_eps(f, c, above, 1);
+    if (above[c] < 0) return side_eps(f, c, below, 0);
     return 0.5 * (f.eps[cells.at(below)] + f.eps[cells.at(above)]);
 }
 
@@ -99,6 +117,14 @@ void change_porosity(GridFluid& f, Field<double> eps) {
     f.eps_before_2 = std::move(f.eps_before);
     f.eps_before = std::move(f.eps);
     f.eps = std::move(eps);
+}
+
+Field<double> medium_porosity(const GridFluid& f, double t) {
+    Field<double> eps(f.grid.cells().size());
+    for_each_place(f.grid.cells(), [&](const Place& p, std::size_t k) {
+        eps[k] = porosity_at(*f.medium, f.grid.centre(p), t, f.domain.size);
+    });
+    return eps;
 }
 
 Eigen::VectorXd porosity_gain(const GridFluid& f, double dt) {

@@ -1,7 +1,7 @@
 // The fluid on a grid: an incompressible fluid of which each cell holds the share eps.
 //
 //     d(eps)/dt + div(eps u) = 0
-//     eps rho (du/dt + u . grad u) = -eps grad p + div(eps mu grad u) + eps rho f + ...
+//     eps rho (du/dt + u . grad u) = -eps grad p + div(eps mu grad u) - beta u + eps rho (f + s) + ...
 //
 // (Anderson & Jackson 1967, Ind. Eng. Chem. Fundam. 6, 527; model A). One velocity per face, normal to it.
 #pragma once
@@ -12,10 +12,13 @@
 #include "grid/advection.hpp"
 #include "grid/apertures.hpp"
 #include "grid/grid.hpp"
+#include "grid/grid_sources.hpp"
+#include "grid/resistance.hpp"
 
 #include <Eigen/SparseCore>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 namespace plumb {
@@ -39,6 +42,9 @@ struct GridFluid {
     double density = 0.0, viscosity = 0.0; // [kg/m3], dynamic [Pa s]
     Vec3 body_force = Vec3::Zero();        // [m/s2]
     Advection advection = NoAdvection{};
+    std::optional<MediumPorosity> medium;   // what fills the grid, if anything does
+    Resistance resistance = NoResistance{}; // of it
+    GridSource source = NoGridSource{};
     bool second_order = true; // in time: backward differences over two steps, else over one
     double residual = 1e-8;   // of the momentum and mass equations, relative to what drives the step
 
@@ -72,7 +78,7 @@ void number_unknowns(GridFluid& fluid);
 /// Whether the fluid can leave by some side.
 bool has_outflow(const GridFluid& fluid);
 
-/// Mean of eps on either side of a face.
+/// Mean of eps on either side of a face; on a side of the box, continued from within.
 double face_eps(const GridFluid& fluid, std::size_t c, const Place& face);
 
 /// eps times the open area of a face [m2].
@@ -83,6 +89,7 @@ using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 /// One component of the momentum equation: matrix u = known + ..., in newtons.
 struct MomentumRows {
     RowMatrix matrix;
+    RowMatrix compact;     // without second upstream neighbours, for the preconditioner; empty where there are none
     Eigen::VectorXd known; // what prescribed velocities and pressures add to the right-hand side
     Eigen::VectorXd mass;  // of the control volumes, rho eps V [kg]
     Eigen::VectorXd room;  // eps times open area times dual width [m3]: what a uniform force per volume acts on
@@ -103,6 +110,9 @@ Eigen::VectorXd known_divergence(const GridFluid& fluid);
 
 /// Called before a step with the porosity of its end; those of the steps before move on.
 void change_porosity(GridFluid& fluid, Field<double> eps);
+
+/// What the fluid's medium leaves it at a time [s], by cell; the fluid has a medium.
+Field<double> medium_porosity(const GridFluid& fluid, double t);
 
 /// V d(eps)/dt of the cells at the end of a step of `dt` [m3/s], what their fluid gains: a backward difference over two
 /// steps where they are known and the fluid is of second order in time, else over one.

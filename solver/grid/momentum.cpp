@@ -8,28 +8,17 @@
 #include "grid/grid_fluid.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace plumb {
 
 namespace {
 
-/// One row while it is made.
-struct Row {
-    std::array<std::pair<int, double>, 13> entry{}; // neighbours by friction and by what is carried, and itself
+/// Entries of a row of a matrix, in the order of their columns.
+struct Entries {
+    std::array<std::pair<int, double>, 26> entry{};
     std::size_t size = 0;
-    double diagonal = 0.0, known = 0.0;
 
-    /// Adds `coefficient` (neighbour - own) to the force on the control volume; the neighbour is an unknown or, with
-    /// column < 0, has the value given.
-    void couple(int column, double coefficient, double value) {
-        diagonal += coefficient;
-        if (column < 0)
-            known += coefficient * value;
-        else
-            put(column, -coefficient);
-    }
-
-    /// Adds to the entry of a column; they stay in order.
     void put(int column, double value) {
         std::size_t at = size;
         while (at > 0 && entry[at - 1].first >= column) --at;
@@ -45,18 +34,43 @@ struct Row {
     }
 };
 
-/// The rows as a matrix.
+/// One row while it is made. What second upstream neighbours carry is kept apart, so that the preconditioner can do
+/// without them.
+struct Row {
+    Entries near, far; // `far`: second upstream, and what it changes
+    double diagonal = 0.0, far_diagonal = 0.0, known = 0.0;
+
+    /// Adds `coefficient` (neighbour - own) to the force on the control volume; the neighbour is an unknown or, with
+    /// column < 0, has the value given.
+    void couple(int column, double coefficient, double value) {
+        diagonal += coefficient;
+        if (column < 0)
+            known += coefficient * value;
+        else
+            near.put(column, -coefficient);
+    }
+    void couple_far(int column, double coefficient, double value) {
+        far_diagonal += coefficient;
+        if (column < 0)
+            known += coefficient * value;
+        else
+            far.put(column, -coefficient);
+    }
+};
+
+/// Rows as a matrix.
 RowMatrix matrix_of(const std::vector<Row>& rows) {
     const auto n = static_cast<Eigen::Index>(rows.size());
     RowMatrix matrix(n, n);
     int* begin = matrix.outerIndexPtr();
     begin[0] = 0;
-    for (std::size_t k = 0; k < rows.size(); ++k) begin[k + 1] = begin[k] + static_cast<int>(rows[k].size);
+    for (std::size_t k = 0; k < rows.size(); ++k) begin[k + 1] = begin[k] + static_cast<int>(rows[k].near.size);
     matrix.resizeNonZeros(begin[n]);
     parallel_for(rows.size(), [&](std::size_t k) {
-        for (std::size_t e = 0; e < rows[k].size; ++e) {
-            matrix.innerIndexPtr()[begin[k] + static_cast<int>(e)] = rows[k].entry[e].first;
-            matrix.valuePtr()[begin[k] + static_cast<int>(e)] = rows[k].entry[e].second;
+        const Entries& entries = rows[k].near;
+        for (std::size_t e = 0; e < entries.size; ++e) {
+            matrix.innerIndexPtr()[begin[k] + static_cast<int>(e)] = entries.entry[e].first;
+            matrix.valuePtr()[begin[k] + static_cast<int>(e)] = entries.entry[e].second;
         }
     });
     return matrix;
@@ -64,9 +78,11 @@ RowMatrix matrix_of(const std::vector<Row>& rows) {
 
 class RowMaker {
 public:
-    RowMaker(const GridFluid& fluid, std::size_t component, const Velocity& carrier, bool carries = true)
-        : f(fluid), c(component), cells(fluid.grid.cells()), faces(fluid.grid.faces(component)), advects(carries) {
-        if (!advects) return;
+    /// `all`: what is carried and what a porous medium takes too, else friction alone.
+    RowMaker(const GridFluid& fluid, std::size_t component, const Velocity& carrier, bool all = true)
+        : f(fluid), c(component), flux_of(carrier), cells(fluid.grid.cells()), faces(fluid.grid.faces(component)),
+          friction_only(!all) {
+        if (friction_only) return;
         for (std::size_t d = 0; d < f.dimensions(); ++d) {
             const Block across = f.grid.faces(d);
             flux[d].resize(across.size());
@@ -78,6 +94,7 @@ public:
 
     Row row(const Place& p) const {
         Row made;
+        if (!friction_only) resist(p, made);
         for (const int way : {0, 1}) {
             along(p, way, made);
             for (std::size_t d = 0; d < f.dimensions(); ++d)
@@ -100,8 +117,9 @@ public:
 private:
     const GridFluid& f;
     const std::size_t c;
+    const Velocity& flux_of;
     const Block cells, faces;
-    const bool advects;
+    const bool friction_only;
     std::array<Field<double>, 3> flux; // mass through faces [kg/s]; empty where nothing is carried
 
     const Axis& axis(std::size_t d) const { return f.grid.axis[d]; }
@@ -113,13 +131,82 @@ private:
 
     /// Mass through a face across axis d [kg/s].
     double mass_flux(std::size_t d, const Place& face) const {
-        return advects ? flux[d][f.grid.faces(d).at(face)] : 0.0;
+        return friction_only ? 0.0 : flux[d][f.grid.faces(d).at(face)];
     }
 
-    void carry(Row& row, double outward, int column, double value) const {
-        if (!advects) return;
-        const double weight = std::visit([&](const auto& law) { return law(outward); }, f.advection);
-        row.couple(column, -outward * weight, value);
+    void couple(Row& row, const Place& face, double coefficient) const {
+        const std::size_t k = faces.at(face);
+        row.couple(f.unknown[c][k], coefficient, f.u[c][k]);
+    }
+
+    /// A face upstream of the upstream one, and how far the flux is from that over the distance of the two.
+    struct Second {
+        Place face{};
+        double reach = 0.0; // 0: there is none
+    };
+
+    void carry(Row& row, double outward, const Place& other, const Second& second) const {
+        if (friction_only) return;
+        const auto weight = [&](double reach) {
+            return std::visit([&](const auto& law) { return law(outward, reach); }, f.advection);
+        };
+        const Carried near = weight(0.0), all = weight(second.reach);
+        couple(row, other, -outward * near.next);
+        if (all.second == 0.0) return;
+        const std::size_t next = faces.at(other), beyond = faces.at(second.face);
+        row.couple_far(f.unknown[c][next], -outward * (all.next - near.next), f.u[c][next]);
+        row.couple_far(f.unknown[c][beyond], -outward * all.second, f.u[c][beyond]);
+    }
+
+    /// Upstream of `face` along the component's own axis, on the side `way`; the flux is in the middle of a cell of
+    /// width `across`.
+    Second second_along(const Place& face, int way, double across) const {
+        const int cell = way == 0 ? axis(c).cell_below(face[c]) : axis(c).cell_above(face[c]);
+        if (cell < 0) return {};
+        const Place beyond = with(face, c, way == 0 ? cell : axis(c).face_above(cell));
+        if (share(beyond) == 0.0 || f.open.cell[cells.at(with(face, c, cell))] == 0.0) return {};
+        return {beyond, 0.5 * across / axis(c).width(cell)};
+    }
+
+    /// Upstream of `face` along another axis.
+    Second second_across(const Place& face, std::size_t d, int way) const {
+        const int beyond = axis(d).next(face[d], way);
+        if (beyond < 0 || !edge_open(face, d, way)) return {};
+        const double width = axis(d).width(face[d]);
+        return {with(face, d, beyond), width / (width + axis(d).width(beyond))};
+    }
+
+    /// What the porous medium around a face takes: beta(|u|) u, linear around the carrier's speed as Newton's method
+    /// has it, which is of second order in time like the carrier and does not overshoot in long steps.
+    void resist(const Place& p, Row& row) const {
+        if (std::holds_alternative<NoResistance>(f.resistance)) return;
+        const double speed = face_speed(p);
+        for (const int cell : {axis(c).cell_below(p[c]), axis(c).cell_above(p[c])}) {
+            if (cell < 0) continue;
+            const std::size_t k = cells.at(with(p, c, cell));
+            const double volume = 0.5 * f.open.cell[k] * f.grid.cell_volume(with(p, c, cell));
+            const Resisted r =
+                std::visit([&](const auto& law) { return law(f.eps[k], speed, f.density, f.viscosity); }, f.resistance);
+            row.diagonal += (r.beta + r.rise) * volume;
+            row.known += r.rise * volume * flux_of[c][faces.at(p)];
+        }
+    }
+
+    /// Speed of the carrier at a face: other components are the mean of the four around it [m/s].
+    double face_speed(const Place& p) const {
+        double square = std::pow(flux_of[c][faces.at(p)], 2);
+        for (std::size_t d = 0; d < f.dimensions(); ++d) {
+            if (d == c) continue;
+            double sum = 0.0;
+            int count = 0;
+            for (const int a : {axis(c).cell_below(p[c]), axis(c).cell_above(p[c])}) {
+                if (a < 0) continue;
+                for (const int b : {p[d], axis(d).face_above(p[d])})
+                    sum += flux_of[d][f.grid.faces(d).at(with(with(p, c, a), d, b))], ++count;
+            }
+            square += std::pow(sum / count, 2);
+        }
+        return std::sqrt(square);
     }
 
     /// Through the middle of the cell on one side along the component's own axis.
@@ -132,11 +219,12 @@ private:
         const double own = share(p) * full, next = share(other) * full;
         if (volume > 0.0) {
             const double friction = f.viscosity * f.eps[cells.at(middle)] * own / volume;
-            row.couple(f.unknown[c][faces.at(other)], friction * next, f.u[c][faces.at(other)]);
+            couple(row, other, friction * next);
             row.diagonal += friction * (own - next); // the rest of the polygon's sides is a wall at rest
         }
         const double outward = (way == 0 ? -0.5 : 0.5) * (mass_flux(c, p) + mass_flux(c, other));
-        carry(row, outward, f.unknown[c][faces.at(other)], f.u[c][faces.at(other)]);
+        const double across = axis(c).width(cell);
+        carry(row, outward, other, outward < 0.0 ? second_along(other, way, across) : second_along(p, 1 - way, across));
     }
 
     /// Mean of eps in the up to four cells around an edge.
@@ -176,10 +264,9 @@ private:
             row.diagonal += friction / own;
         } else if (next >= 0) {
             const Place other = with(p, d, next);
-            const int column = f.unknown[c][faces.at(other)];
-            const double value = f.u[c][faces.at(other)];
-            row.couple(column, friction / (own + 0.5 * share(other) * axis(d).width(next)), value);
-            carry(row, outward_flux(p, d, way), column, value);
+            couple(row, other, friction / (own + 0.5 * share(other) * axis(d).width(next)));
+            const double outward = outward_flux(p, d, way);
+            carry(row, outward, other, outward < 0.0 ? second_across(other, d, way) : second_across(p, d, 1 - way));
         } else {
             at_side(p, d, way, friction / own, row);
         }
@@ -190,7 +277,7 @@ private:
         if (side.kind == GridSide::Kind::no_slip) row.couple(-1, friction, side.velocity[static_cast<Eigen::Index>(c)]);
         if (side.kind == GridSide::Kind::inflow) { // comes in without a velocity along the side
             row.couple(-1, friction, 0.0);
-            if (advects) row.couple(-1, std::max(-outward_flux(p, d, way), 0.0), 0.0);
+            if (!friction_only) row.couple(-1, std::max(-outward_flux(p, d, way), 0.0), 0.0);
         }
     }
 };
@@ -202,6 +289,20 @@ double outflow_force(const GridFluid& f, std::size_t c, const Place& p) {
     if (p[c] == 0) return open_area(f, c, p) * f.sides[c][0].pressure;
     if (p[c] == axis.cells()) return -open_area(f, c, p) * f.sides[c][1].pressure;
     return 0.0;
+}
+
+/// The matrix of the rows, and that of their near entries alone where they have others.
+void fill(MomentumRows& made, std::vector<Row>& rows) {
+    parallel_for(rows.size(), [&](std::size_t k) { rows[k].near.put(static_cast<int>(k), rows[k].diagonal); });
+    if (std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.far.size > 0; })) {
+        made.compact = matrix_of(rows);
+        parallel_for(rows.size(), [&](std::size_t k) {
+            for (std::size_t e = 0; e < rows[k].far.size; ++e)
+                rows[k].near.put(rows[k].far.entry[e].first, rows[k].far.entry[e].second);
+            rows[k].near.put(static_cast<int>(k), rows[k].far_diagonal);
+        });
+    }
+    made.matrix = matrix_of(rows);
 }
 
 } // namespace
@@ -226,10 +327,9 @@ MomentumRows momentum_rows(const GridFluid& f, std::size_t c, const Velocity& ca
         made.mass[at] = maker.mass(p);
         made.room[at] = open_area(f, c, p) * f.grid.axis[c].dual_width(p[c]);
         made.known[at] = row.known + outflow_force(f, c, p);
-        const double drag = f.drag[c].empty() ? 0.0 : f.drag[c][face_of[k]];
-        row.put(static_cast<int>(k), row.diagonal + per_time * made.mass[at] + drag);
+        row.diagonal += per_time * made.mass[at] + (f.drag[c].empty() ? 0.0 : f.drag[c][face_of[k]]);
     });
-    made.matrix = matrix_of(rows);
+    fill(made, rows);
     return made;
 }
 
@@ -245,8 +345,8 @@ Field<double> friction_on_faces(const GridFluid& f, std::size_t c) {
         const Place p = faces.place(k);
         const Row row = maker.row(p);
         double sum = row.known - row.diagonal * f.u[c][k];
-        for (std::size_t e = 0; e < row.size; ++e)
-            sum -= row.entry[e].second * u[static_cast<std::size_t>(row.entry[e].first)];
+        for (std::size_t e = 0; e < row.near.size; ++e)
+            sum -= row.near.entry[e].second * u[static_cast<std::size_t>(row.near.entry[e].first)];
         force[k] = sum / face_eps(f, c, p);
     });
     return force;

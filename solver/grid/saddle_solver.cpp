@@ -93,7 +93,8 @@ ProjectionPreconditioner::ProjectionPreconditioner(const SaddleSystem& system)
     for (std::size_t c = 0; c < system.dimensions; ++c) {
         const RowMatrix& a = system.momentum[c].matrix;
         inverse_diagonal_[c] = a.diagonal().cwiseInverse();
-        velocity_[c] = std::make_unique<Multigrid>(a, sweeps);
+        velocity_[c] =
+            std::make_unique<Multigrid>(system.momentum[c].compact.rows() > 0 ? system.momentum[c].compact : a, sweeps);
         const RowMatrix scaled = inverse_diagonal_[c].asDiagonal() * system.gradient[c];
         const RowMatrix part = system.divergence[c] * scaled;
         poisson = c == 0 ? part : RowMatrix(poisson + part);

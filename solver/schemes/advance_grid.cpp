@@ -32,8 +32,20 @@ template <class Of> Eigen::VectorXd unknowns(const GridFluid& f, std::size_t c, 
     return values;
 }
 
-/// Right-hand side: what the last steps leave, forces, known velocities.
-Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, double dt) {
+/// Component c of the source at the unknown faces [m/s2].
+Eigen::VectorXd source_at(const GridFluid& f, std::size_t c, double time) {
+    if (std::holds_alternative<NoGridSource>(f.source)) return Eigen::VectorXd::Zero(f.unknowns[c]);
+    const Block faces = f.grid.faces(c);
+    const FluidNumbers numbers{f.domain.size, f.density, 0.0, f.viscosity, f.body_force, LinearState{}};
+    return unknowns(f, c, [&](std::size_t k) {
+        const Vec3 x = f.grid.face_centre(c, faces.place(k));
+        return std::visit([&](const auto& law) { return law(x, time, numbers); },
+                          f.source)[static_cast<Eigen::Index>(c)];
+    });
+}
+
+/// Right-hand side: what the last steps leave, forces, known velocities, what the porosity gains.
+Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, double dt, double time) {
     const SaddleLayout at = layout(s);
     Eigen::VectorXd right(at.size);
     const bool two = two_steps_known(f);
@@ -42,8 +54,10 @@ Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, doubl
         const Eigen::VectorXd before = unknowns(f, c, [&](std::size_t k) {
             return two ? (2.0 * f.u[c][k] - 0.5 * f.u_before[c][k]) / dt : f.u[c][k] / dt;
         });
-        right.segment(at.begin[c], before.size()) = rows.mass.cwiseProduct(before) + rows.known +
-                                                    f.density * f.body_force[static_cast<Eigen::Index>(c)] * rows.room;
+        const Eigen::VectorXd force =
+            f.density * (source_at(f, c, time).array() + f.body_force[static_cast<Eigen::Index>(c)]);
+        right.segment(at.begin[c], before.size()) =
+            rows.mass.cwiseProduct(before) + rows.known + force.cwiseProduct(rows.room);
         if (!f.push[c].empty())
             right.segment(at.begin[c], before.size()) += unknowns(f, c, [&](std::size_t k) { return f.push[c][k]; });
     }
@@ -54,10 +68,12 @@ Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, doubl
 } // namespace
 
 void advance_grid(GridFluid& f, double dt, std::int64_t step) {
+    const double time = dt * static_cast<double>(step);
+    if (f.medium && !is_steady(*f.medium)) change_porosity(f, medium_porosity(f, time));
     const Velocity carrier = continued(f);
     const SaddleSystem s = saddle_system(f, carrier, (two_steps_known(f) ? 1.5 : 1.0) / dt);
     const SaddleLayout at = layout(s);
-    const Eigen::VectorXd right = right_hand_side(f, s, dt);
+    const Eigen::VectorXd right = right_hand_side(f, s, dt, time);
     Eigen::VectorXd x(at.size);
     for (std::size_t c = 0; c < f.dimensions(); ++c)
         x.segment(at.begin[c], f.unknowns[c]) = unknowns(f, c, [&](std::size_t k) { return carrier[c][k]; });
@@ -67,7 +83,6 @@ void advance_grid(GridFluid& f, double dt, std::int64_t step) {
     const SolveReport report = solve(s, preconditioner, right, f.residual, most_iterations, x);
     f.iterations += report.iterations;
     f.greatest_residual = std::max(f.greatest_residual, report.residual);
-    const double time = dt * static_cast<double>(step);
     if (!(report.residual <= 2.0 * f.residual))
         throw Diverged(step, time, "residual of the fluid's equations", 0, report.residual,
                        "the step's linear equations were not solved");

@@ -1,13 +1,13 @@
 // Grains in a prescribed fluid: what the [fluid] and [coupling] tables say, and the forcing of the next step.
 #pragma once
 
+#include "core/prescribed_porosity.hpp"
 #include "core/table.hpp"
 #include "coupling/drag_laws.hpp"
 #include "coupling/exchange.hpp"
 #include "coupling/history_force.hpp"
 #include "coupling/other_forces.hpp"
 #include "coupling/prescribed_flows.hpp"
-#include "coupling/prescribed_porosity.hpp"
 #include "coupling/weights.hpp"
 #include "dem/advance_grains.hpp"
 

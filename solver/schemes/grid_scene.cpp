@@ -95,9 +95,14 @@ void read_numbers(Table& table, GridFluid& f) {
     const bool full = table.choice("pressure", {"full", "dynamic"}) == "full";
     f.body_force = full ? f.domain.gravity : Vec3::Zero();
     if (table.has("body_force")) f.body_force += table.components("body_force", f.domain.dimensions);
+    if (table.has("source")) f.source = make_family<GridSource>(table.law("source"));
     for (std::size_t c = 0; c < 3; ++c) f.u[c].assign(f.grid.faces(c).size(), 0.0);
     f.p.assign(f.grid.cells().size(), 0.0);
     f.eps.assign(f.grid.cells().size(), 1.0);
+    if (!table.has("porosity")) return;
+    f.medium = make_family<MediumPorosity>(table.law("porosity"));
+    f.resistance = make_family<Resistance>(table.law("resistance"));
+    f.eps = medium_porosity(f, 0.0);
 }
 
 /// Distance to the nearest of the walls, negative inside; any wall's own surface is met.

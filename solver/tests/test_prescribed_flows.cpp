@@ -1,6 +1,6 @@
 // Prescribed velocity fields and porosities. Each test says which mistake it would catch.
+#include "core/prescribed_porosity.hpp"
 #include "coupling/prescribed_flows.hpp"
-#include "coupling/prescribed_porosity.hpp"
 
 #include "core/errors.hpp"
 
@@ -84,6 +84,22 @@ TEST(PrescribedPorosity, ValuesByHand) {
     EXPECT_NEAR(porosity_at(linear, Vec3(1.0, 1.0, 0.0), domain), 0.525, 1e-15);
     EXPECT_EQ(porosity_at(linear, Vec3(1.0, 9.0, 0.0), domain), 0.9);
     EXPECT_EQ(porosity_at(linear, Vec3(1.0, -9.0, 0.0), domain), 0.4);
+}
+
+TEST(MediumPorosity, WaveByHand) {
+    const auto wave =
+        make_family<MediumPorosity>(table("law = 'wave'\nmean = 0.6\namplitude = 0.2\nwaves = [1, -2]\nperiod = 4.0"));
+    const Vec3 size(2.0, 8.0, 0.0);
+    EXPECT_NEAR(porosity_at(wave, Vec3(0.5, 0.0, 0.0), 0.0, size), 0.8, 1e-15); // a quarter of a wave
+    EXPECT_NEAR(porosity_at(wave, Vec3(0.0, 1.0, 0.0), 0.0, size), 0.4, 1e-15);
+    EXPECT_NEAR(porosity_at(wave, Vec3(0.5, 0.0, 0.0), 2.0, size), 0.4, 1e-15); // half a period later
+    EXPECT_FALSE(is_steady(wave));
+    EXPECT_THROW(
+        make_family<MediumPorosity>(table("law = 'wave'\nmean = 0.6\namplitude = 0.5\nwaves = [1, 0]\nperiod = 4.0")),
+        InputError);
+    EXPECT_THROW(
+        make_family<MediumPorosity>(table("law = 'wave'\nmean = 0.6\namplitude = 0.1\nwaves = [0.5, 0]\nperiod = 4.0")),
+        InputError);
 }
 
 TEST(PrescribedPorosity, BadTables) {
