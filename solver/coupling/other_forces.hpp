@@ -48,6 +48,18 @@ struct PressureGradient {
     }
 };
 
+/// rho V u . grad u: of the stress of the undisturbed flow no more than the part by which it is carried along. What
+/// some solvers call the pressure-gradient force; the gradient that friction and drag take is left out.
+struct ConvectiveAcceleration {
+    static constexpr std::string_view name = "convective_acceleration";
+    static constexpr bool needs_gradient = true;
+    static constexpr LawInfo info{"rho V u . grad u", "steady flow without friction",
+                                  "DDPM-DEM mud-cake paper, Table 1 (its u div u read as u . grad u)"};
+    Vec3 operator()(const LocalFluid& fluid, const LocalGrain& grain, const Vec3& /*gravity*/) const {
+        return fluid.density * sphere_volume(grain.diameter) * (fluid.gradient * fluid.u);
+    }
+};
+
 /// C_m rho V (Du/Dt - dv/dt), C_m = 1/2 for a sphere. Returned is the part of the fluid's acceleration; the part
 /// -C_m rho V dv/dt is inertia that moves with the grain and is treated as such: the integrator adds `added_mass` to
 /// the mass of the grain on the left-hand side, which is stable for any density ratio.
@@ -119,7 +131,7 @@ struct LiAhmadi {
 };
 
 /// Choosing no force is an empty list of forces. Basset's history force carries a state: history_force.hpp.
-using OtherForce = std::variant<Buoyancy, PressureGradient, VirtualMass, SaffmanMei, LiAhmadi>;
+using OtherForce = std::variant<Buoyancy, PressureGradient, ConvectiveAcceleration, VirtualMass, SaffmanMei, LiAhmadi>;
 
 /// Force of one law on the grain [N].
 inline Vec3 force_on_grain(const OtherForce& law, const LocalFluid& fluid, const LocalGrain& grain,

@@ -26,6 +26,7 @@ struct EqualDiameters {
     explicit EqualDiameters(Table& table);
     double value;          // [m]
     std::int64_t seed = 0; // draws nothing
+    double smallest() const { return value; }
     double largest() const { return value; }
     double operator()(Random& /*random*/, double /*listed*/) const { return value; }
 };
@@ -36,6 +37,7 @@ struct UniformDiameters {
     explicit UniformDiameters(Table& table);
     double minimum, maximum; // [m]
     std::int64_t seed;
+    double smallest() const { return minimum; }
     double largest() const { return maximum; }
     double operator()(Random& random, double /*listed*/) const { return random.uniform(minimum, maximum); }
 };
@@ -48,6 +50,7 @@ struct NormalDiameters {
     explicit NormalDiameters(Table& table);
     double mean, deviation, minimum, maximum; // [m]
     std::int64_t seed;
+    double smallest() const { return minimum; }
     double largest() const { return maximum; }
     double operator()(Random& random, double /*listed*/) const {
         for (;;) {
@@ -62,7 +65,8 @@ struct FileDiameters {
     static constexpr LawInfo info{"d = column \"diameter [m]\" of the file of places", "d > 0", "-"};
     FileDiameters() = default;
     std::int64_t seed = 0;
-    double largest() const { return 0.0; } // the file says
+    double smallest() const { return 0.0; } // the file says
+    double largest() const { return 0.0; }
     double operator()(Random& /*random*/, double listed) const { return listed; }
 };
 

@@ -41,6 +41,13 @@ void number_unknowns(GridFluid& f) {
         if (reached[k]) f.unknown_pressure[k] = f.unknown_pressures++;
 }
 
+bool has_outflow(const GridFluid& f) {
+    for (std::size_t c = 0; c < f.dimensions(); ++c)
+        for (const GridSide& side : f.sides[c])
+            if (side.kind == GridSide::Kind::outflow) return true;
+    return false;
+}
+
 namespace {
 
 /// eps on a side of the box: continued linearly from the outermost cell and the next one (`way` inwards), within half
@@ -131,6 +138,11 @@ Eigen::VectorXd porosity_gain(const GridFluid& f, double dt) {
         const double rise = two ? 1.5 * last - 0.5 * (f.eps_before[k] - f.eps_before_2[k]) : last;
         gain[row] = f.open.cell[k] * f.grid.cell_volume(p) * rise / dt;
     });
+    // no fluid can leave a closed box: what the sum is of rounding would leave the equations without a solution
+    if (has_outflow(f)) return gain;
+    double sum = 0.0;
+    for (const double one : gain) sum += one;
+    for (double& one : gain) one -= sum / static_cast<double>(gain.size());
     return gain;
 }
 

@@ -55,6 +55,10 @@ struct GridFluid {
     // one and two steps before eps; empty as long as they are not known, or where eps never changes
     Field<double> eps_before, eps_before_2;
 
+    // what grains do to the fluid in the coming step, by face; empty without grains
+    Velocity drag; // per velocity [N s/m], implicit
+    Velocity push; // [N]
+
     // which faces and cells are solved for: their number, by face and cell, -1 where they are not
     std::array<std::vector<int>, 3> unknown;
     std::vector<int> unknown_pressure;
@@ -70,6 +74,9 @@ struct GridFluid {
 /// Numbers the unknowns: faces that are open and not prescribed, cells with an open face. The sides and the apertures
 /// are there.
 void number_unknowns(GridFluid& fluid);
+
+/// Whether the fluid can leave by some side.
+bool has_outflow(const GridFluid& fluid);
 
 /// Mean of eps on either side of a face; on a side of the box, continued from within.
 double face_eps(const GridFluid& fluid, std::size_t c, const Place& face);
@@ -90,6 +97,10 @@ struct MomentumRows {
 
 /// Friction and what the mass flux of `carrier` carries, plus mass times `per_time` [1/s].
 MomentumRows momentum_rows(const GridFluid& fluid, std::size_t c, const Velocity& carrier, double per_time);
+
+/// Force of the friction of the present velocities on the control volumes of the faces, over the fluid fraction there
+/// [N].
+Field<double> friction_on_faces(const GridFluid& fluid, std::size_t c);
 
 /// div(eps u) over the cells by unknown velocities of component c [m2].
 RowMatrix divergence_rows(const GridFluid& fluid, std::size_t c);

@@ -42,12 +42,13 @@ struct Row {
 
 class RowMaker {
 public:
-    RowMaker(const GridFluid& fluid, std::size_t component, const Velocity& carrier)
-        : f(fluid), c(component), flux_of(carrier), cells(fluid.grid.cells()), faces(fluid.grid.faces(component)) {}
+    RowMaker(const GridFluid& fluid, std::size_t component, const Velocity& carrier, bool carries = true)
+        : f(fluid), c(component), flux_of(carrier), cells(fluid.grid.cells()), faces(fluid.grid.faces(component)),
+          advects(carries) {}
 
     Row row(const Place& p) const {
         Row made;
-        resist(p, made);
+        if (advects) resist(p, made);
         for (const int way : {0, 1}) {
             along(p, way, made);
             for (std::size_t d = 0; d < f.dimensions(); ++d)
@@ -72,6 +73,7 @@ private:
     const std::size_t c;
     const Velocity& flux_of;
     const Block cells, faces;
+    const bool advects;
 
     const Axis& axis(std::size_t d) const { return f.grid.axis[d]; }
     static Place with(Place p, std::size_t d, int value) {
@@ -98,6 +100,7 @@ private:
     };
 
     void carry(Row& row, double outward, const Place& other, const Second& second) const {
+        if (!advects) return;
         const auto weight = [&](double reach) {
             return std::visit([&](const auto& law) { return law(outward, reach); }, f.advection);
         };
@@ -228,7 +231,7 @@ private:
         if (side.kind == GridSide::Kind::no_slip) row.couple(-1, friction, side.velocity[static_cast<Eigen::Index>(c)]);
         if (side.kind == GridSide::Kind::inflow) { // comes in without a velocity along the side
             row.couple(-1, friction, 0.0);
-            row.couple(-1, std::max(-outward_flux(p, d, way), 0.0), 0.0);
+            if (advects) row.couple(-1, std::max(-outward_flux(p, d, way), 0.0), 0.0);
         }
     }
 };
@@ -291,10 +294,30 @@ MomentumRows momentum_rows(const GridFluid& f, std::size_t c, const Velocity& ca
         made.mass[at] = maker.mass(p);
         made.room[at] = open_area(f, c, p) * f.grid.axis[c].dual_width(p[c]);
         made.known[at] = row.known + outflow_force(f, c, p);
-        row.diagonal += per_time * made.mass[at];
+        const double drag = f.drag[c].empty() ? 0.0 : f.drag[c][face_of[k]];
+        row.diagonal += per_time * made.mass[at] + drag;
     });
     fill(made, rows);
     return made;
+}
+
+Field<double> friction_on_faces(const GridFluid& f, std::size_t c) {
+    const Block faces = f.grid.faces(c);
+    std::vector<double> u(static_cast<std::size_t>(f.unknowns[c]));
+    for (std::size_t k = 0; k < faces.size(); ++k)
+        if (f.unknown[c][k] >= 0) u[static_cast<std::size_t>(f.unknown[c][k])] = f.u[c][k];
+    const RowMaker maker(f, c, f.u, false);
+    Field<double> force(faces.size(), 0.0);
+    parallel_for(faces.size(), [&](std::size_t k) {
+        if (f.unknown[c][k] < 0) return;
+        const Place p = faces.place(k);
+        const Row row = maker.row(p);
+        double sum = row.known - row.diagonal * f.u[c][k];
+        for (std::size_t e = 0; e < row.nears; ++e)
+            sum -= row.near[e].second * u[static_cast<std::size_t>(row.near[e].first)];
+        force[k] = sum / face_eps(f, c, p);
+    });
+    return force;
 }
 
 } // namespace plumb

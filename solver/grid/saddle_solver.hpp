@@ -4,9 +4,7 @@
 // nothing of the splitting is left in the answer (Griffith 2009, J. Comput. Phys. 228, 7565).
 #pragma once
 
-#include "grid/grid_fluid.hpp"
-
-#include <Eigen/SparseCholesky>
+#include "grid/multigrid.hpp"
 
 #include <memory>
 
@@ -34,25 +32,24 @@ struct SaddleLayout {
 };
 SaddleLayout layout(const SaddleSystem& system);
 
-/// An approximate inverse: A by its symmetric part (without second upstream neighbours, which would fill the factors),
-/// factored, and the Schur complement D A^-1 D^T by
+/// An approximate inverse: A by multigrid (of near neighbours only), and the
+/// Schur complement D A^-1 D^T by
 ///     S^-1 = L^-1 (D Q^-1 A Q^-1 D^T) L^-1,    L = D Q^-1 D^T,    Q = diag A
 /// (least-squares commutator: Elman et al. 2006, SIAM J. Sci. Comput. 27, 1651), which is a projection step where A is
-/// diagonal and knows friction, drag and advection where it is not.
+/// diagonal and knows friction, drag and advection where it is not. Cheap to make, so each step makes its own.
 class ProjectionPreconditioner {
 public:
     explicit ProjectionPreconditioner(const SaddleSystem& system);
-    Eigen::VectorXd operator()(const Eigen::VectorXd& residual) const;
+    Eigen::VectorXd operator()(const Eigen::VectorXd& residual);
 
 private:
-    using Factor = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>>;
-    Eigen::VectorXd schur_inverse(const Eigen::VectorXd& r) const;
+    Eigen::VectorXd schur_inverse(const Eigen::VectorXd& r);
 
     const SaddleSystem* system_;
     SaddleLayout layout_;
-    std::array<std::unique_ptr<Factor>, 3> velocity_;
+    std::array<std::unique_ptr<Multigrid>, 3> velocity_;
     std::array<Eigen::VectorXd, 3> inverse_diagonal_;
-    Factor poisson_;
+    std::unique_ptr<Multigrid> poisson_;
 };
 
 struct SolveReport {
@@ -61,7 +58,7 @@ struct SolveReport {
 };
 
 /// Improves `x` until the residual is below `tolerance` times the right-hand side, or says how far it came.
-SolveReport solve(const SaddleSystem& system, const ProjectionPreconditioner& preconditioner,
-                  const Eigen::VectorXd& right, double tolerance, int most_iterations, Eigen::VectorXd& x);
+SolveReport solve(const SaddleSystem& system, ProjectionPreconditioner& preconditioner, const Eigen::VectorXd& right,
+                  double tolerance, int most_iterations, Eigen::VectorXd& x);
 
 } // namespace plumb

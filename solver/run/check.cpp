@@ -84,7 +84,7 @@ Json step_part(const Simulation& s) {
     part["steps"] = total_steps(t);
     part["steps_per_output"] = t.steps_per_output;
     part["outputs"] = t.outputs + 1;
-    if ((s.sph && !s.coupling) || s.grid) return part;
+    if (s.fluid_alone()) return part;
     part["contact_law"] = std::visit([](const auto& pairs) { return law_name(ContactLaw(pairs.laws.front())); },
                                      s.grains.contact.contact);
     part["contact_times"] = contact_times_part(s.grains);
@@ -93,7 +93,7 @@ Json step_part(const Simulation& s) {
 
 Json fluid_part(const Simulation& s) {
     Json part{{"drag", law_name(s.fluid->drag)},
-              {"flow", s.coupling ? "computed" : law_name(s.fluid->flow)},
+              {"flow", s.fluid->gathers ? "computed" : law_name(s.fluid->flow)},
               {"grains", Json::array()}};
     for (const GrainNumbers& n : grain_numbers(s))
         part["grains"].push_back({{"group", n.group},
@@ -177,10 +177,11 @@ Json grid_part(const Simulation& s) {
 Json grid_cost_part(const Run& run) {
     const Simulation& s = run.simulation;
     const double n = static_cast<double>(s.grid->unknown_pressures), steps = static_cast<double>(total_steps(s.timing));
+    const double grains = s.grid_coupling ? most_grains(s) * static_cast<double>(s.grid_coupling->grain_steps) : 0.0;
     const double fill = s.grid->grid.dimensions == 2 ? n * std::log2(n + 2.0) : std::pow(n, 4.0 / 3.0);
     return {{"grain_steps", n * steps},
             {"memory_bytes", bytes_of_program + bytes_per_cell * n + bytes_per_fill * fill},
-            {"wall_s", steps * (step_cost + n / cell_rate)},
+            {"wall_s", steps * (step_cost + n / cell_rate + grains / contact_rate)},
             {"nominal_rate", cell_rate},
             {"threads", thread_count()}};
 }
@@ -211,8 +212,7 @@ Json remarks_part(const std::vector<Remark>& remarks) {
 
 Json report(const Run& run) {
     Json all{{"scene", run.scene.path}, {"scene_hash", run.scene.hash}};
-    const bool fluid_alone = (run.simulation.sph || run.simulation.grid) && !run.simulation.coupling;
-    if (!fluid_alone) all["grains"] = grains_part(run.simulation);
+    if (!run.simulation.fluid_alone()) all["grains"] = grains_part(run.simulation);
     all["time"] = step_part(run.simulation);
     if (run.simulation.fluid) all["fluid"] = fluid_part(run.simulation);
     if (run.simulation.sph) all["sph"] = sph_part(run.simulation);

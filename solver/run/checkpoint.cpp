@@ -14,7 +14,7 @@ namespace plumb {
 
 namespace {
 
-constexpr std::int64_t format_version = 4; // to be raised with every change of the layout or of what it means
+constexpr std::int64_t format_version = 5; // to be raised with every change of the layout or of what it means
 constexpr const char* format_name = "plumb checkpoint";
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "fields of vectors are written as they lie in memory");
@@ -70,6 +70,12 @@ void write_grid(Hdf5Writer& file, const GridFluid& f) {
                std::vector<std::int64_t>{f.u_before[0].empty() ? 0 : 1, f.eps_before.empty() ? 0 : 1});
     file.write("grid/iterations", std::vector<std::int64_t>{f.iterations});
     file.write("grid/residual", std::vector<double>{f.greatest_residual});
+}
+
+void write_grid_coupling(Hdf5Writer& file, const GridCoupling& c) {
+    write_field(file, "coupling/owed", c.owed);
+    write_field(file, "coupling/freedom", c.freedom);
+    file.write("coupling/bounded", std::vector<std::int64_t>{c.bounded});
 }
 
 void write_sph(Hdf5Writer& file, const SphFluid& f) {
@@ -164,6 +170,7 @@ private:
     void load_sph(SphFluid& fluid) const;
     void load_grid(GridFluid& fluid) const;
     void load_coupling(Coupling& coupling, const SphFluid& fluid) const;
+    void load_coupling(GridCoupling& coupling, std::size_t n) const;
     void load_outputs(Run& run, const nlohmann::json& saved) const;
 
     Hdf5Reader file_;
@@ -298,6 +305,12 @@ void Loader::load_coupling(Coupling& coupling, const SphFluid& fluid) const {
     renew_weights(coupling.weights, fluid, coupling.places);
 }
 
+void Loader::load_coupling(GridCoupling& coupling, std::size_t n) const {
+    read_field("coupling/owed", coupling.owed, n);
+    read_field("coupling/freedom", coupling.freedom, n);
+    coupling.bounded = integers("coupling/bounded", 1)[0];
+}
+
 void Loader::load_outputs(Run& run, const nlohmann::json& saved) const {
     for (Probe& probe : run.probes) {
         probe.time = file_.doubles("series/" + probe.name + "/time");
@@ -337,8 +350,9 @@ Run Loader::load() {
     system.listed_time = file_.number("/", "listed_time");
     if (run.simulation.sph) load_sph(*run.simulation.sph);
     if (run.simulation.grid) load_grid(*run.simulation.grid);
-    if (!run.simulation.sph || run.simulation.coupling) load_grains(system);
+    if (!run.simulation.fluid_alone()) load_grains(system);
     if (run.simulation.coupling) load_coupling(*run.simulation.coupling, *run.simulation.sph);
+    if (run.simulation.grid_coupling) load_coupling(*run.simulation.grid_coupling, system.grains.size());
     if (run.simulation.fluid) load_fluid(*run.simulation.fluid, system.grains.size());
     load_outputs(run, saved);
     run.begun = true;
@@ -365,6 +379,7 @@ void save_checkpoint(const std::string& path, const Run& run, const Cost& cost) 
     if (run.simulation.fluid) write_fluid(file, *run.simulation.fluid);
     if (run.simulation.sph) write_sph(file, *run.simulation.sph);
     if (run.simulation.grid) write_grid(file, *run.simulation.grid);
+    if (run.simulation.grid_coupling) write_grid_coupling(file, *run.simulation.grid_coupling);
     if (run.simulation.coupling) {
         write_field(file, "coupling/x_listed", run.simulation.coupling->weights.x_listed);
         file.write("coupling/counts",

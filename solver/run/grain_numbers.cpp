@@ -172,8 +172,7 @@ std::vector<Remark> missing_models(const Simulation& simulation) {
 std::vector<Remark> idle_models(const Simulation& simulation) {
     std::vector<Remark> remarks;
     if (simulation.fluid) remark_on_idle_forces(*simulation.fluid, simulation.grains.domain, remarks);
-    const bool fluid_alone = (simulation.sph || simulation.grid) && !simulation.coupling;
-    if (!fluid_alone) remark_on_idle_contacts(simulation.grains, remarks);
+    if (!simulation.fluid_alone()) remark_on_idle_contacts(simulation.grains, remarks);
     return remarks;
 }
 

@@ -31,6 +31,7 @@ std::vector<LawFamily> law_families() {
                                     {"grains.contact", law_entries<ContactLaw>()},
                                     {"grains.contact.rolling", law_entries<RollingLaw>()},
                                     {"wall.shape", law_entries<Wall>()},
+                                    {"coupling.kernel (grid)", law_entries<GridKernel>()},
                                     {"coupling.drag", law_entries<DragLaw>()},
                                     {"coupling.forces", law_entries<OtherForce>()},
                                     {"coupling.basset", law_entries<HistoryForce>()},

@@ -94,6 +94,15 @@ std::string provenance_json(const Scene& scene, const Simulation& simulation, co
                          {"at_greatest_viscosity", c.at_greatest},
                          {"mean_pressure_gradient", {gradient[0], gradient[1], gradient[2]}}};
     }
+    if (simulation.grid_coupling) {
+        const GridCoupling& c = *simulation.grid_coupling;
+        const Vec3& gradient = simulation.fluid->mean_gradient;
+        j["coupling"] = {{"kernel", law_name(c.weights.kernel)},
+                         {"kernel_width", c.weights.width},
+                         {"grain_steps", c.grain_steps},
+                         {"bounded_porosities", c.bounded},
+                         {"mean_pressure_gradient", {gradient[0], gradient[1], gradient[2]}}};
+    }
     if (simulation.sph) {
         const SphFluid& f = *simulation.sph;
         j["sph"] = {{"particles", f.particles},

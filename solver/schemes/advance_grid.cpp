@@ -58,6 +58,8 @@ Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, doubl
             f.density * (source_at(f, c, time).array() + f.body_force[static_cast<Eigen::Index>(c)]);
         right.segment(at.begin[c], before.size()) =
             rows.mass.cwiseProduct(before) + rows.known + force.cwiseProduct(rows.room);
+        if (!f.push[c].empty())
+            right.segment(at.begin[c], before.size()) += unknowns(f, c, [&](std::size_t k) { return f.push[c][k]; });
     }
     right.tail(s.known_divergence.size()) = -s.known_divergence - s.pressure_scale * porosity_gain(f, dt);
     return right;
@@ -77,7 +79,8 @@ void advance_grid(GridFluid& f, double dt, std::int64_t step) {
         x.segment(at.begin[c], f.unknowns[c]) = unknowns(f, c, [&](std::size_t k) { return carrier[c][k]; });
     for (std::size_t k = 0; k < f.p.size(); ++k)
         if (f.unknown_pressure[k] >= 0) x[at.begin[3] + f.unknown_pressure[k]] = f.p[k] / s.pressure_scale;
-    const SolveReport report = solve(s, ProjectionPreconditioner(s), right, f.residual, most_iterations, x);
+    ProjectionPreconditioner preconditioner(s);
+    const SolveReport report = solve(s, preconditioner, right, f.residual, most_iterations, x);
     f.iterations += report.iterations;
     f.greatest_residual = std::max(f.greatest_residual, report.residual);
     if (!(report.residual <= 2.0 * f.residual))

@@ -137,39 +137,48 @@ void check_growth(const Table& coupling, const SphFluid& fluid) {
                                   least, needed, std::ceil(105.0 * needed) / 100.0, allowed));
 }
 
-FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid) {
+FluidOnGrains fluid_on_grains(Table& coupling, double density, double viscosity, bool full_pressure) {
     FluidOnGrains f;
-    f.density = fluid.density;
-    f.viscosity = fluid.viscosity;
+    f.density = density;
+    f.viscosity = viscosity;
     f.gathers = true;
     if (f.viscosity == 0.0) coupling.fail("drag", "the fluid has no viscosity");
     read_coupling_laws(coupling, f);
     if (f.history) coupling.fail("forces", "\"basset\" needs a given flow");
     for (const OtherForce& law : f.forces) {
         f.at_grains.wants_gradient |= needs_gradient(law);
-        if (std::holds_alternative<Buoyancy>(law) && fluid.extras.stratified)
+        if (std::holds_alternative<Buoyancy>(law) && full_pressure)
             coupling.fail("forces", "\"buoyancy\" is in the gradient of a \"full\" pressure already");
     }
     return f;
 }
 
-void drive(Table& coupling, SphFluid& fluid, FluidOnGrains& on_grains, const Coupling& state,
-           const GrainSystem& grains) {
-    if (!coupling.has("mean_pressure_gradient")) return;
+Vec3 read_mean_gradient(Table& coupling, const FluidOnGrains& on_grains, bool two_way,
+                        const std::function<Vec3()>& balancing) {
+    if (!coupling.has("mean_pressure_gradient")) return Vec3::Zero();
     const auto pushes = [](const OtherForce& law) { return std::holds_alternative<PressureGradient>(law); };
     if (std::none_of(on_grains.forces.begin(), on_grains.forces.end(), pushes))
         coupling.fail("mean_pressure_gradient", "needs \"pressure_gradient\" among the forces");
     if (coupling.type("mean_pressure_gradient") == toml::node_type::string) {
         coupling.choice("mean_pressure_gradient", {"balances_weight"});
-        if (!state.two_way)
+        if (!two_way)
             coupling.fail(
                 "mean_pressure_gradient",
                 "nothing hands the grains' weight to a fluid that does not feel them (direction = \"one_way\"): "
                 "give a vector [Pa/m], or leave it out");
-        on_grains.mean_gradient = balancing_gradient(fluid, on_grains, grains);
-    } else {
-        on_grains.mean_gradient = coupling.components("mean_pressure_gradient", 3);
+        return balancing();
     }
+    return coupling.components("mean_pressure_gradient", 3);
+}
+
+FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid) {
+    return fluid_on_grains(coupling, fluid.density, fluid.viscosity, fluid.extras.stratified);
+}
+
+void drive(Table& coupling, SphFluid& fluid, FluidOnGrains& on_grains, const Coupling& state,
+           const GrainSystem& grains) {
+    on_grains.mean_gradient = read_mean_gradient(coupling, on_grains, state.two_way,
+                                                 [&] { return balancing_gradient(fluid, on_grains, grains); });
     fluid.body_force -= on_grains.mean_gradient / fluid.density;
 }
 

@@ -5,6 +5,8 @@
 #include "schemes/advance_coupled.hpp"
 #include "schemes/stable_step.hpp"
 
+#include <functional>
+
 namespace plumb {
 
 /// Kernels, their widths and the direction.
@@ -16,6 +18,13 @@ void check_growth(const Table& coupling, const SphFluid& fluid);
 
 /// The forces of the fluid on the grains.
 FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid);
+
+/// The same for any computed fluid; `full_pressure`: its pressure holds its weight, so buoyancy is in the gradient.
+FluidOnGrains fluid_on_grains(Table& coupling, double density, double viscosity, bool full_pressure);
+
+/// The mean pressure gradient that the scene names, `balancing` for "balances_weight", zero for none [Pa/m].
+Vec3 read_mean_gradient(Table& coupling, const FluidOnGrains& on_grains, bool two_way,
+                        const std::function<Vec3()>& balancing);
 
 /// A mean pressure gradient, if the scene names one; after couple(), which sets the masses that it may have to balance.
 void drive(Table& coupling, SphFluid& fluid, FluidOnGrains& on_grains, const Coupling& state,

@@ -221,16 +221,30 @@ GridFluid read_grid_fluid(Table& table, const Domain& domain, const std::vector<
     return f;
 }
 
+namespace {
+/// Of one component.
+double greatest_speed(const GridFluid& f, std::size_t c) {
+    double fastest = 0.0;
+    for (const double u : f.u[c]) fastest = std::max(fastest, std::abs(u));
+    for (const auto& ends : f.sides)
+        for (const GridSide& side : ends)
+            fastest = std::max(fastest, std::abs(side.velocity[static_cast<Eigen::Index>(c)]));
+    return fastest;
+}
+} // namespace
+
+double greatest_speed(const GridFluid& f) {
+    double fastest = 0.0;
+    for (std::size_t c = 0; c < f.dimensions(); ++c) fastest = std::max(fastest, greatest_speed(f, c));
+    return fastest;
+}
+
 std::vector<StepLimit> grid_limits(const GridFluid& f) {
     double rate = 0.0; // cells a second
     for (std::size_t c = 0; c < f.dimensions(); ++c) {
-        double fastest = 0.0, narrowest = std::numeric_limits<double>::infinity();
-        for (const double u : f.u[c]) fastest = std::max(fastest, std::abs(u));
-        for (const auto& ends : f.sides)
-            for (const GridSide& side : ends)
-                fastest = std::max(fastest, std::abs(side.velocity[static_cast<Eigen::Index>(c)]));
+        double narrowest = std::numeric_limits<double>::infinity();
         for (int k = 0; k < f.grid.axis[c].cells(); ++k) narrowest = std::min(narrowest, f.grid.axis[c].width(k));
-        rate = std::max(rate, fastest / narrowest);
+        rate = std::max(rate, greatest_speed(f, c) / narrowest);
     }
     return {{"courant", rate > 0.0 ? 1.0 / rate : std::numeric_limits<double>::infinity(),
              "width of a cell over the greatest speed at the start, of inlets and walls; for accuracy, not stability"}};

@@ -15,6 +15,9 @@ namespace plumb {
 GridFluid read_grid_fluid(Table& table, const Domain& domain, const std::vector<FluidWall>& walls,
                           std::vector<Table>& inlets, std::vector<Table>& outlets);
 
+/// At the start, of inlets and of walls [m/s].
+double greatest_speed(const GridFluid& fluid);
+
 /// The step is implicit: nothing limits it but accuracy, at one cell a step for the greatest speed known before the
 /// run.
 std::vector<StepLimit> grid_limits(const GridFluid& fluid);

@@ -4,6 +4,7 @@
 #include "dem/advance_grains.hpp"
 #include "dem/arrange.hpp"
 #include "schemes/coupled_scene.hpp"
+#include "schemes/grid_coupled_scene.hpp"
 #include "schemes/grid_scene.hpp"
 #include "schemes/sph_scene.hpp"
 
@@ -168,16 +169,42 @@ void refuse_grain_tables(const Table& root) {
         if (root.has(key)) root.fail(key, "there are no [grains] in this scene");
 }
 
-/// A scene of the fluid on a grid alone.
+/// The fluid on a grid, without what grains there may be.
 void make_grid(Table& root, Simulation& s) {
-    if (root.has("grains")) root.fail("fluid.method", "\"grid\" knows no grains yet");
-    refuse_grain_tables(root);
     Table fluid = root.table("fluid"), time = root.table("time");
     std::vector<Table> wall_tables = root.tables("wall"), inlets = root.tables("inlet"),
                        outlets = root.tables("outlet");
     s.grid = read_grid_fluid(fluid, s.grains.domain, read_fluid_walls(wall_tables, s.grains.domain), inlets, outlets);
     s.grid->second_order = time.choice("integrator", {"implicit_euler", "bdf2"}) == "bdf2";
+}
+
+/// A scene of the fluid on a grid alone.
+void make_grid_alone(Table& root, Simulation& s) {
+    refuse_grain_tables(root);
+    make_grid(root, s);
+    Table time = root.table("time");
     s.timing = timing(time, grid_limits(*s.grid), probe_intervals(root));
+}
+
+/// The fluid on a grid and grains, each acting on the other.
+void make_grid_coupled(Table& root, Simulation& s) {
+    make_grid(root, s);
+    if (s.grid->medium) root.table("fluid").fail("porosity", "is that of the [grains] in a scene with grains");
+    read_grain_system(root, s.grains);
+    s.grains.integrator = Integrator::velocity_verlet;
+    Table coupling = root.table("coupling"), time = root.table("time"), fluid = root.table("fluid");
+    s.grid_coupling = read_grid_coupling(coupling, *s.grid, s.grains);
+    s.fluid = fluid_on_grains(coupling, *s.grid, fluid.text("pressure") == "full");
+    if (!s.grains.injectors.empty() && !has_outflow(*s.grid))
+        root.fail("injector", "the fluid that injected grains displace has no outlet to leave by");
+    couple(*s.grid_coupling, *s.grid, s.grains);
+    drive(coupling, *s.grid, *s.fluid, *s.grid_coupling, s.grains);
+    s.timing = timing(time, grid_limits(*s.grid), probe_intervals(root));
+    s.grid_coupling->grain_steps = grain_steps(time, s.timing.dt, grain_limits(s.grains, greatest_speed(*s.grid)));
+    set_inertia(*s.fluid, s.grains, s.timing.dt);
+    start(s.grains, s.timing.dt / static_cast<double>(s.grid_coupling->grain_steps));
+    s.fluid->last_drag.assign(s.grains.grains.size(), Vec3::Zero());
+    s.fluid->last_fluid_force.assign(s.grains.grains.size(), Vec3::Zero());
 }
 
 /// Smoothed particles, without what grains there may be.
@@ -231,7 +258,7 @@ Simulation make_simulation(Scene& scene) {
     Simulation s;
     s.grains.domain = read_domain(root.table("domain"));
     if (is_method(root, "grid")) {
-        make_grid(root, s);
+        root.has("grains") ? make_grid_coupled(root, s) : make_grid_alone(root, s);
         return s;
     }
     if (is_method(root, "sph")) {
@@ -268,7 +295,16 @@ void advance(Simulation& simulation, std::int64_t steps) {
                                 simulation.timing.dt, simulation.grains.step + 1);
             return;
         }
-        if (simulation.sph || simulation.grid) {
+        if (simulation.grid_coupling) {
+            for (std::int64_t k = 0; k < steps; ++k) {
+                if (inject_due(simulation.grains) > 0)
+                    set_inertia(*simulation.fluid, simulation.grains, simulation.timing.dt);
+                advance_grid_coupled(*simulation.grid_coupling, *simulation.grid, *simulation.fluid, simulation.grains,
+                                     simulation.timing.dt, simulation.grains.step + 1);
+            }
+            return;
+        }
+        if (simulation.fluid_alone()) {
             GrainSystem& clock = simulation.grains;
             for (std::int64_t k = 0; k < steps; ++k) {
                 if (simulation.grid)

@@ -6,6 +6,7 @@
 #include "schemes/advance_coupled.hpp"
 #include "schemes/advance_fluid.hpp"
 #include "schemes/advance_grid.hpp"
+#include "schemes/advance_grid_coupled.hpp"
 #include "schemes/fluid_on_grains.hpp"
 #include "schemes/stable_step.hpp"
 
@@ -20,7 +21,11 @@ struct Simulation {
     std::optional<SphFluid> sph;        // fluid.method = "sph"
     std::optional<GridFluid> grid;      // fluid.method = "grid"
     std::optional<Coupling> coupling;   // of smoothed particles and grains
-    Timing timing;                      // steps, outputs and limits, fixed for the whole run
+    std::optional<GridCoupling> grid_coupling;
+    Timing timing; // steps, outputs and limits, fixed for the whole run
+
+    /// No grains are in the scene, nor can be.
+    bool fluid_alone() const { return (sph || grid) && !coupling && !grid_coupling; }
 };
 
 /// Builds everything `scene` describes except the probes, which stay to be read from scene.root.

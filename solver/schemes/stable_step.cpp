@@ -24,7 +24,7 @@ double impact_speed(const GrainSystem& system, double fluid_speed) {
     return 2.0 * fastest + fall;
 }
 
-/// Lightest and smallest grain of every group: those with the shortest contacts.
+/// Lightest and smallest grain of every group, there or to come: those with the shortest contacts.
 struct Extremes {
     double mass = std::numeric_limits<double>::infinity();
     double radius = std::numeric_limits<double>::infinity();
@@ -79,6 +79,13 @@ std::vector<PairTime> contact_times(const GrainSystem& system, double speed) {
         Extremes& e = least[static_cast<std::size_t>(system.grains.group[k])];
         e.mass = std::min(e.mass, system.grains.mass[k]);
         e.radius = std::min(e.radius, system.grains.radius[k]);
+    }
+    for (const Injector& injector : system.injectors) { // grains that are yet to come
+        const auto group = static_cast<std::size_t>(injector.group);
+        double d = std::visit([](const auto& law) { return law.smallest(); }, injector.diameter);
+        for (const double listed : injector.point_diameter) d = d > 0.0 ? std::min(d, listed) : listed;
+        least[group].radius = std::min(least[group].radius, 0.5 * d);
+        least[group].mass = std::min(least[group].mass, system.groups[group].density * sphere_volume(d));
     }
     const std::size_t groups = system.groups.size(), materials = groups + system.walls.size();
     std::vector<PairTime> times;

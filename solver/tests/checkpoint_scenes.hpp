@@ -302,4 +302,136 @@ name = "energy"
 quantity = "fluid_kinetic_energy"
 )";
 
+/// A medium whose porosity moves.
+inline constexpr const char* medium_on_grid = R"(
+[domain]
+size = [1.0, 1.0]
+periodic = [true, true]
+gravity = [0.0, 0.0]
+[fluid]
+method = "grid"
+density = 1.0
+viscosity = 0.02
+spacing = 0.125
+advection = "linear_upwind"
+residual = 1e-8
+pressure = "full"
+porosity = {law = "wave", mean = 0.7, amplitude = 0.15, waves = [1, 2], period = 0.5}
+resistance = {law = "ergun", diameter = 0.6}
+body_force = [1.0, 0.5]
+initial = {law = "rest"}
+[time]
+end = 10.0
+output_interval = 0.1
+integrator = "bdf2"
+step = 0.01
+[[probe]]
+name = "energy"
+quantity = "fluid_kinetic_energy"
+)";
+
+/// Grains are dropped into a flow in a slab and held by rows of cylinders.
+inline const char* const grains_on_grid = R"(
+[domain]
+size = [0.006, 0.016, 0.002]
+periodic = [false, false, false]
+gravity = [0.0, -9.81, 0.0]
+[fluid]
+method = "grid"
+dimensions = 2
+density = 1188.0
+viscosity = 2.797e-2
+spacing = 4e-4
+stretch_y = {at = [0.0, 0.008, 0.016], times = [2.0, 1.0, 1.0]}
+advection = "upwind"
+residual = 1e-6
+pressure = "dynamic"
+initial = {law = "rest"}
+[[wall]]
+name = "sides"
+shape = "plane"
+point = [0.0, 0.0, 0.0]
+normal = [1.0, 0.0, 0.0]
+slip = "no_slip"
+contact = "as_grains"
+[[wall]]
+name = "other_side"
+shape = "plane"
+point = [0.006, 0.0, 0.0]
+normal = [-1.0, 0.0, 0.0]
+slip = "no_slip"
+contact = "as_grains"
+[[wall]]
+name = "back"
+shape = "plane"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+slip = "free_slip"
+contact = "as_grains"
+[[wall]]
+name = "front"
+shape = "plane"
+point = [0.0, 0.0, 0.002]
+normal = [0.0, 0.0, -1.0]
+slip = "free_slip"
+contact = "as_grains"
+[[wall]]
+name = "rows"
+shape = "cylinder_rows"
+lower = [0.0, 0.002, 0.0]
+upper = [0.006, 0.009, 0.002]
+per_row = 3
+between = "one_fewer"
+porosity_at = [0.002]
+porosity = [0.5]
+slip = "no_slip"
+contact = "as_grains"
+[[inlet]]
+name = "top"
+point = [0.003, 0.016, 0.001]
+normal = [0.0, -1.0, 0.0]
+profile = {law = "parabolic", mean_speed = 0.1, radius = 0.003}
+[[outlet]]
+name = "bottom"
+point = [0.003, 0.0, 0.001]
+normal = [0.0, 1.0, 0.0]
+pressure = 0.0
+[[grains]]
+name = "grains"
+density = 2376.0
+rotation = true
+motion = "free"
+arrange = {law = "none"}
+contact = {law = "linear_spring", stiffness = 500.0, restitution = 0.3, friction = 0.3, tangential_stiffness = 200.0, tangential_damping = 0.01, rolling = "none"}
+[[injector]]
+group = "grains"
+diameter = 8e-4
+points = [[0.0012, 0.0145, 0.0007], [0.0029, 0.0145, 0.0013], [0.0044, 0.0145, 0.0006]]
+interval = 0.01
+velocity = [0.0, -0.1, 0.0]
+start = 0.0
+end = 1.0
+[coupling]
+direction = "two_way"
+drag = "di_felice"
+exchange = "exponential"
+forces = ["buoyancy", "pressure_gradient", "virtual_mass", "saffman_mei"]
+kernel = "gaussian"
+kernel_width = {times_diameter = 0.5}
+own_volume = "included"
+least_porosity = 0.3
+self_disturbance = "none"
+suspension_viscosity = "none"
+[time]
+end = 0.3
+output_interval = 0.05
+integrator = "bdf2"
+step = 5e-4
+grain_step = "auto"
+snapshots = true
+[[probe]]
+name = "pressure"
+quantity = "fluid_greatest_pressure"
+)";
+
 } // namespace plumb::fixture::checkpoint_scenes

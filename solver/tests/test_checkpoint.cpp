@@ -2,6 +2,7 @@
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "run/checkpoint.hpp"
+#include "run/checkpoint_fields.hpp"
 #include "run/diff.hpp"
 #include "run/hdf5_file.hpp"
 #include "run/time_loop.hpp"
@@ -63,6 +64,10 @@ std::vector<std::uint64_t> bits(const Simulation& s) {
             for (int c = 0; c < 3; ++c) put((*field)[at][c]);
         put(g.radius[at]), put(g.mass[at]), put(g.mobility[at]);
     }
+    if (s.grid)
+        for_each_grid_field(*s.grid, [&](const std::string&, const Field<double>& field) {
+            for (const double x : field) put(x);
+        });
     if (!s.sph) return all;
     for (const auto field : {&BoundaryParticles::x, &BoundaryParticles::mirror})
         for (std::size_t c = 0; c < 2; ++c)
@@ -119,7 +124,9 @@ TEST_P(Checkpoint, RunsAreTheSameForAnyNumberOfThreads) {
     EXPECT_TRUE(found.same) << found.text;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint, testing::Values(dry, wet, flowing, passing, published, on_grid));
+INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint,
+                         testing::Values(dry, wet, flowing, passing, published, on_grid, medium_on_grid,
+                                         grains_on_grid));
 
 std::string complaint(const std::string& path) {
     try {

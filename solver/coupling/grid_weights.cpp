@@ -1,0 +1,270 @@
+#include "coupling/grid_weights.hpp"
+
+#include "core/parallel.hpp"
+#include "grid/sums.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plumb {
+
+namespace {
+
+/// Number of the cell along an axis that holds x; on a periodic axis counted on beyond the box, else the nearest.
+int cell_at(const Axis& axis, double x) {
+    const double length = axis.node.back() - axis.node.front();
+    const double turns = axis.periodic ? std::floor((x - axis.node.front()) / length) : 0.0;
+    const auto above = std::upper_bound(axis.node.begin(), axis.node.end(), x - turns * length);
+    const int k = static_cast<int>(above - axis.node.begin()) - 1;
+    return static_cast<int>(turns) * axis.cells() + std::clamp(k, 0, axis.cells() - 1);
+}
+
+bool inside(const Axis& axis, double x) { return axis.periodic || (x >= axis.node.front() && x <= axis.node.back()); }
+
+/// A place along an axis and how far a point is from it.
+struct Near {
+    int index;
+    double away_sq; // [m2]
+};
+
+/// The cells, or the faces, of an axis in reach of x.
+std::vector<Near> near_along(const Axis& axis, double x, double reach, bool of_faces) {
+    std::vector<Near> found;
+    const int n = axis.cells();
+    const double length = axis.node.back() - axis.node.front();
+    const int first = cell_at(axis, x - reach), last = cell_at(axis, x + reach) + (of_faces ? 1 : 0);
+    for (int k = first; k <= last; ++k) {
+        const int turns = axis.periodic ? static_cast<int>(std::floor(static_cast<double>(k) / n)) : 0;
+        const int index = k - turns * n;
+        const double at = (of_faces ? axis.node[static_cast<std::size_t>(index)] : axis.centre(index)) + turns * length;
+        if (std::abs(at - x) < reach) found.push_back({index, (at - x) * (at - x)});
+    }
+    return found;
+}
+
+using Column = std::vector<std::pair<std::int32_t, double>>;
+
+/// Volume times kernel for the nodes of a block near x, divided by their sum.
+template <class Law>
+Column column(const Law& law, const GridFluid& f, const Block& block, const Field<double>& volume, int faces_across,
+              double width, const Vec3& x) {
+    std::array<std::vector<Near>, 3> near{std::vector<Near>{{0, 0.0}}, {{0, 0.0}}, {{0, 0.0}}};
+    const double reach = law.support * width;
+    for (std::size_t d = 0; d < f.dimensions(); ++d)
+        near[d] =
+            near_along(f.grid.axis[d], x[static_cast<Eigen::Index>(d)], reach, static_cast<int>(d) == faces_across);
+    Column found;
+    double sum = 0.0;
+    for (const Near& z : near[2])
+        for (const Near& y : near[1])
+            for (const Near& along : near[0]) {
+                const double q = std::sqrt(along.away_sq + y.away_sq + z.away_sq) / width;
+                const std::size_t node = block.at({along.index, y.index, z.index});
+                if (q >= law.support || volume[node] == 0.0) continue;
+                const double weight = volume[node] * law.w(q);
+                found.emplace_back(static_cast<std::int32_t>(node), weight);
+                sum += weight;
+            }
+    if (!(sum > 0.0)) return {};
+    for (auto& entry : found) entry.second /= sum;
+    return found;
+}
+
+/// The cell of the centre, or its two faces.
+Column column(const CellCounting& /*law*/, const GridFluid& f, const Block& block, const Field<double>& volume,
+              int faces_across, double /*width*/, const Vec3& x) {
+    Place p{0, 0, 0};
+    for (std::size_t d = 0; d < f.dimensions(); ++d) {
+        const Axis& axis = f.grid.axis[d];
+        if (!inside(axis, x[static_cast<Eigen::Index>(d)])) return {};
+        p[d] = ((cell_at(axis, x[static_cast<Eigen::Index>(d)]) % axis.cells()) + axis.cells()) % axis.cells();
+    }
+    Column found;
+    const auto add = [&](const Place& at) {
+        if (volume[block.at(at)] > 0.0) found.emplace_back(static_cast<std::int32_t>(block.at(at)), 1.0);
+    };
+    add(p);
+    if (faces_across >= 0) {
+        const auto c = static_cast<std::size_t>(faces_across);
+        p[c] = f.grid.axis[c].face_above(p[c]);
+        add(p);
+    }
+    for (auto& entry : found) entry.second /= static_cast<double>(found.size());
+    return found;
+}
+
+/// Columns of all grains for cells (faces_across < 0) or the faces across an axis.
+SparseColumns columns(const GridWeights& w, const GridFluid& f, const std::vector<Vec3>& x, int faces_across) {
+    const bool of_cells = faces_across < 0;
+    const auto c = static_cast<std::size_t>(std::max(faces_across, 0));
+    const Block block = of_cells ? f.grid.cells() : f.grid.faces(c);
+    const Field<double>& volume = of_cells ? w.cell_volume : w.face_volume[c];
+    std::vector<Column> column_of(x.size());
+    parallel_for(x.size(), [&](std::size_t j) {
+        column_of[j] = std::visit(
+            [&](const auto& law) { return column(law, f, block, volume, faces_across, w.width, x[j]); }, w.kernel);
+    });
+    SparseColumns all;
+    for (const Column& one : column_of) {
+        for (const auto& [node, weight] : one) {
+            all.node.push_back(node);
+            all.weight.push_back(weight);
+        }
+        all.begin.push_back(all.node.size());
+    }
+    return all;
+}
+
+/// The open cells beside a cell.
+std::vector<std::size_t> neighbours(const GridFluid& f, const Place& p) {
+    const Block cells = f.grid.cells();
+    std::vector<std::size_t> found;
+    for (std::size_t c = 0; c < f.dimensions(); ++c)
+        for (const int way : {0, 1}) {
+            Place q = p, face = p;
+            q[c] = f.grid.axis[c].next(p[c], way);
+            if (way == 1) face[c] = f.grid.axis[c].face_above(p[c]);
+            if (q[c] >= 0 && f.open.face[c][f.grid.faces(c).at(face)] > 0.0) found.push_back(cells.at(q));
+        }
+    return found;
+}
+
+/// Solids move out of cells that hold more than `most` of them, in equal parts to the neighbours. Returns how many
+/// cells were too full at the start.
+std::int64_t relieve(const GridFluid& f, const Field<double>& room, double most, std::vector<double>& solid) {
+    constexpr int most_passes = 1000;
+    const Block cells = f.grid.cells();
+    std::int64_t count = -1;
+    for (int pass = 0; pass < most_passes; ++pass) {
+        std::vector<std::pair<std::size_t, double>> moved;
+        std::int64_t full = 0;
+        for (std::size_t k = 0; k < solid.size(); ++k) {
+            const double excess = solid[k] - most * room[k];
+            if (room[k] == 0.0 || excess <= 1e-12 * room[k]) continue;
+            ++full;
+            const std::vector<std::size_t> beside = neighbours(f, cells.place(k));
+            if (beside.empty()) continue;
+            moved.emplace_back(k, -excess);
+            for (const std::size_t q : beside) moved.emplace_back(q, excess / static_cast<double>(beside.size()));
+        }
+        if (count < 0) count = full;
+        if (moved.empty()) break;
+        for (const auto& [k, amount] : moved) solid[k] += amount;
+    }
+    return count;
+}
+
+} // namespace
+
+void measure(GridWeights& w, const GridFluid& f) {
+    const Block cells = f.grid.cells();
+    w.cell_volume.assign(cells.size(), 0.0);
+    for_each_place(cells, [&](const Place& p, std::size_t k) {
+        if (f.unknown_pressure[k] >= 0) w.cell_volume[k] = f.open.cell[k] * f.grid.cell_volume(p);
+    });
+    for (std::size_t c = 0; c < f.dimensions(); ++c) {
+        w.face_volume[c].assign(f.grid.faces(c).size(), 0.0);
+        for_each_place(f.grid.faces(c), [&](const Place& p, std::size_t k) {
+            if (f.unknown[c][k] >= 0) w.face_volume[c][k] = control_volume(f, c, p);
+        });
+    }
+}
+
+void set_weights(GridWeights& w, const GridFluid& f, const std::vector<Vec3>& x) {
+    w.cells = columns(w, f, x, -1);
+    for (std::size_t c = 0; c < f.dimensions(); ++c) w.faces[c] = columns(w, f, x, static_cast<int>(c));
+}
+
+Vec3 gathered_velocity(const GridWeights& w, const Velocity& u, std::size_t j) {
+    Vec3 v = Vec3::Zero();
+    for (std::size_t c = 0; c < 3; ++c)
+        if (w.faces[c].begin.size() > 1)
+            v[static_cast<Eigen::Index>(c)] = w.faces[c].gathered(j, 0.0, [&](std::size_t k) { return u[c][k]; });
+    return v;
+}
+
+BoundedPorosity porosity(const GridFluid& f, const GridWeights& w, const std::vector<double>& volume, double least) {
+    std::vector<double> solid(f.eps.size(), 0.0);
+    for (std::size_t j = 0; j < volume.size(); ++j)
+        w.cells.spread(j, [&](std::size_t k, double weight) { solid[k] += weight * volume[j]; });
+    BoundedPorosity found;
+    found.bounded = relieve(f, w.cell_volume, 1.0 - least, solid);
+    found.eps.assign(solid.size(), 1.0);
+    for (std::size_t k = 0; k < solid.size(); ++k)
+        if (w.cell_volume[k] > 0.0) found.eps[k] = std::max(1.0 - solid[k] / w.cell_volume[k], least);
+    return found;
+}
+
+namespace {
+
+/// Differences of the pressure over the faces of a cell, and friction on them, as forces on its open volume [N/m3].
+Vec3 stress_in(const GridFluid& f, const std::array<Field<double>, 3>& friction, const Place& p, double volume) {
+    const Block cells = f.grid.cells();
+    Vec3 force = Vec3::Zero();
+    for (std::size_t c = 0; c < f.dimensions(); ++c) {
+        const Axis& axis = f.grid.axis[c];
+        const Block faces = f.grid.faces(c);
+        for (const int way : {0, 1}) {
+            Place face = p, q = p;
+            if (way == 1) face[c] = axis.face_above(p[c]);
+            const std::size_t k = faces.at(face);
+            if (f.unknown[c][k] < 0) continue;
+            q[c] = axis.next(p[c], way);
+            const double own = f.p[cells.at(p)];
+            const double other = q[c] >= 0 ? f.p[cells.at(q)] : f.sides[c][static_cast<std::size_t>(way)].pressure;
+            const double area = f.open.face[c][k] * f.grid.face_area(c, face);
+            // half of what acts on the face's control volume belongs to this cell; all where no cell is beyond
+            const double share = q[c] >= 0 ? 0.5 : 1.0;
+            force[static_cast<Eigen::Index>(c)] +=
+                share * ((way == 0 ? other - own : own - other) * area + friction[c][k]);
+        }
+    }
+    return force / volume;
+}
+
+/// Velocity gradient in a cell by the mean velocities of its neighbours; zero inside of solids.
+Eigen::Matrix3d gradient_in(const GridFluid& f, const Place& p) {
+    const auto mean = [&](const Place& q, std::size_t c) {
+        Place above = q;
+        above[c] = f.grid.axis[c].face_above(q[c]);
+        const Block faces = f.grid.faces(c);
+        return 0.5 * (f.u[c][faces.at(q)] + f.u[c][faces.at(above)]);
+    };
+    Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
+    for (std::size_t c = 0; c < f.dimensions(); ++c)
+        for (std::size_t d = 0; d < f.dimensions(); ++d) {
+            const Axis& axis = f.grid.axis[d];
+            Place below = p, above = p;
+            double distance = 0.0;
+            for (const int way : {0, 1}) {
+                const int next = axis.next(p[d], way);
+                if (next < 0) continue;
+                (way == 0 ? below : above)[d] = next;
+                distance += 0.5 * (axis.width(p[d]) + axis.width(next));
+            }
+            if (distance > 0.0)
+                gradient(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(d)) =
+                    (mean(above, c) - mean(below, c)) / distance;
+        }
+    return gradient;
+}
+
+} // namespace
+
+CellFields cell_fields(const GridFluid& f, bool with_gradient) {
+    std::array<Field<double>, 3> friction;
+    for (std::size_t c = 0; c < f.dimensions(); ++c) friction[c] = friction_on_faces(f, c);
+    CellFields fields;
+    const Block cells = f.grid.cells();
+    fields.stress.assign(cells.size(), Vec3::Zero());
+    if (with_gradient) fields.gradient.assign(cells.size(), Eigen::Matrix3d::Zero());
+    parallel_for(cells.size(), [&](std::size_t k) {
+        if (f.unknown_pressure[k] < 0) return;
+        const Place p = cells.place(k);
+        fields.stress[k] = stress_in(f, friction, p, f.open.cell[k] * f.grid.cell_volume(p));
+        if (with_gradient) fields.gradient[k] = gradient_in(f, p);
+    });
+    return fields;
+}
+
+} // namespace plumb

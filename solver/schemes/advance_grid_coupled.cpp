@@ -1,0 +1,226 @@
+#include "schemes/advance_grid_coupled.hpp"
+
+#include "core/parallel.hpp"
+#include "dem/advance_grains.hpp"
+#include "schemes/advance_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace plumb {
+
+namespace {
+
+constexpr double held = 1e-6; // a freedom below which a grain is taken as held fast: mobility and rate would underflow
+
+/// Where the grains will be `ahead` [s] from now, with their present velocities; their columns of P. Grains that are
+/// new have no debts and are free.
+void set_places(GridCoupling& c, const GridFluid& fluid, const GrainSystem& system, double ahead) {
+    const Grains& g = system.grains;
+    c.places.x.resize(g.size());
+    c.places.volume.resize(g.size());
+    c.owed.resize(g.size(), Vec3::Zero());
+    c.freedom.resize(g.size(), 1.0);
+    parallel_for(g.size(), [&](std::size_t k) {
+        const auto id = static_cast<std::size_t>(g.id[k]);
+        c.places.x[id] = g.x[k] + ahead * g.v[k];
+        c.places.volume[id] = sphere_volume(2.0 * g.radius[k]);
+    });
+    set_weights(c.weights, fluid, c.places.x);
+}
+
+bool is_dry(const GridCoupling& c, std::size_t id) {
+    const GridWeights& w = c.weights;
+    if (w.cells.empty(id)) return true;
+    for (const SparseColumns& faces : w.faces)
+        if (faces.begin.size() > 1 && !faces.empty(id)) return false;
+    return true;
+}
+
+/// Fluid fraction at a grain, with its own part in it or without.
+double gathered_porosity(const GridCoupling& c, std::size_t id) {
+    const GridWeights& w = c.weights;
+    double eps = w.cells.gathered(id, 0.0, [&](std::size_t k) { return c.eps[k]; });
+    if (!c.own_volume)
+        w.cells.spread(
+            id, [&](std::size_t k, double weight) { eps += c.places.volume[id] * weight * weight / w.cell_volume[k]; });
+    return std::min(eps, 1.0);
+}
+
+/// The fluid as it is now at all grains.
+void gather(const GridCoupling& c, const GridFluid& fluid, GatheredFluid& at, bool with_stress) {
+    const std::size_t n = c.places.size();
+    at.u.resize(n);
+    at.a.assign(n, Vec3::Zero());
+    at.stress.assign(n, Vec3::Zero());
+    at.eps.assign(n, 1.0);
+    at.dry.assign(n, 0);
+    at.load.assign(n, 0.0);
+    if (at.wants_gradient) at.gradient.assign(n, Eigen::Matrix3d::Zero());
+    const CellFields fields = with_stress || at.wants_gradient ? cell_fields(fluid, at.wants_gradient) : CellFields{};
+    parallel_for(n, [&](std::size_t id) {
+        at.dry[id] = is_dry(c, id) ? 1 : 0;
+        if (at.dry[id] != 0) return;
+        const SparseColumns& cells = c.weights.cells;
+        at.u[id] = gathered_velocity(c.weights, fluid.u, id);
+        at.eps[id] = gathered_porosity(c, id);
+        if (!fields.stress.empty())
+            at.stress[id] = cells.gathered(id, Vec3(Vec3::Zero()), [&](std::size_t k) { return fields.stress[k]; });
+        if (at.wants_gradient)
+            at.gradient[id] = cells.gathered(id, Eigen::Matrix3d(Eigen::Matrix3d::Zero()),
+                                             [&](std::size_t k) { return fields.gradient[k]; });
+    });
+}
+
+bool needs_stress(const FluidOnGrains& f) {
+    return std::any_of(f.forces.begin(), f.forces.end(), [](const OtherForce& law) {
+        return std::holds_alternative<PressureGradient>(law) || std::holds_alternative<VirtualMass>(law);
+    });
+}
+
+LocalFluid local_fluid(const FluidOnGrains& f, std::size_t id) {
+    LocalFluid local;
+    local.u = f.at_grains.u[id];
+    local.acceleration = (f.at_grains.stress[id] - f.mean_gradient) / f.density;
+    if (f.at_grains.wants_gradient) local.gradient = f.at_grains.gradient[id];
+    local.eps = f.at_grains.eps[id];
+    local.density = f.density;
+    local.viscosity = f.viscosity;
+    return local;
+}
+
+/// Forces on a grain that the fluid's own equation has already, or that nothing of the scene's fluid exerts: the stress
+/// on its volume, which the fluid keeps on its own share, a mean gradient, buoyancy [N].
+Vec3 force_without_reaction(const FluidOnGrains& f, const LocalFluid& local, double d, const Vec3& gravity) {
+    Vec3 force = Vec3::Zero();
+    for (const OtherForce& law : f.forces)
+        if (std::holds_alternative<PressureGradient>(law) || std::holds_alternative<Buoyancy>(law))
+            force += force_on_grain(law, local, {d, Vec3::Zero()}, gravity);
+    return force;
+}
+
+/// Drag on a grain in the coming step, as the fluid's equations foresee it: rate u' - known [N].
+struct LinearDrag {
+    double rate = 0.0; // [N s/m]
+    Vec3 known = Vec3::Zero();
+    Vec3 at(const Vec3& u) const { return rate * u - known; }
+};
+
+LinearDrag linear_drag(const FluidOnGrains& f, const GrainSystem& system, double freedom, std::size_t k, double dt) {
+    const Grains& g = system.grains;
+    const auto id = static_cast<std::size_t>(g.id[k]);
+    const double d = 2.0 * g.radius[k];
+    const LocalFluid local = local_fluid(f, id);
+    const auto resistance = [&](double slip) {
+        return drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip);
+    };
+    const Vec3 slip = g.v[k] - local.u;
+    if (std::holds_alternative<ExplicitExchange>(f.exchange)) return {0.0, resistance(slip.norm()) * slip};
+    const double mobility = freedom * g.mobility[k];
+    if (mobility < held * g.mobility[k] || mobility == 0.0) {
+        const double b = resistance(slip.norm());
+        return {b, b * g.v[k]};
+    }
+    Vec3 other = g.mass[k] * system.domain.gravity;
+    for (const OtherForce& law : f.forces) other += force_on_grain(law, local, {d, g.v[k]}, system.domain.gravity);
+    const Vec3 acceleration = mobility * other;
+    return std::visit(
+        [&](const auto& exchange) -> LinearDrag {
+            const double rate = mid_step_rate(
+                exchange, [&](double speed) { return mobility * resistance(speed); }, slip, acceleration, dt);
+            const StepWeights w = exchange(rate * dt);
+            const double b = rate / mobility;
+            return {b * w.phi1, b * (w.phi1 * g.v[k] + (dt * w.phi2) * acceleration)};
+        },
+        f.exchange);
+}
+
+/// What all grains do to the fluid in the coming step, by id; debts are paid.
+std::vector<LinearDrag> foresee(const GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, double dt) {
+    const Grains& g = system.grains;
+    std::vector<LinearDrag> drag(g.size());
+    parallel_for(g.size(), [&](std::size_t k) {
+        const auto id = static_cast<std::size_t>(g.id[k]);
+        if (f.at_grains.dry[id] == 0) drag[id] = linear_drag(f, system, c.freedom[id], k, dt);
+    });
+    return drag;
+}
+
+void push_fluid(const GridCoupling& c, GridFluid& fluid, const std::vector<LinearDrag>& drag, double dt) {
+    for (std::size_t q = 0; q < fluid.dimensions(); ++q) {
+        const auto axis = static_cast<Eigen::Index>(q);
+        fluid.drag[q].assign(fluid.u[q].size(), 0.0);
+        fluid.push[q].assign(fluid.u[q].size(), 0.0);
+        for (std::size_t id = 0; id < drag.size(); ++id)
+            c.weights.faces[q].spread(id, [&](std::size_t k, double weight) {
+                fluid.drag[q][k] += weight * drag[id].rate;
+                fluid.push[q][k] += weight * (drag[id].known[axis] - c.owed[id][axis] / dt);
+            });
+    }
+}
+
+std::vector<Vec3> velocities(const Grains& g) {
+    std::vector<Vec3> v(g.size());
+    for (std::size_t k = 0; k < g.size(); ++k) v[static_cast<std::size_t>(g.id[k])] = g.v[k];
+    return v;
+}
+
+/// After the grains' steps: what each has received but for the forces without reaction, less what the fluid has given
+/// by `drag`, and how much of what acted moved it.
+void settle(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, const std::vector<LinearDrag>& drag,
+            const std::vector<Vec3>& v_before, double dt) {
+    const Grains& g = system.grains;
+    parallel_for(g.size(), [&](std::size_t k) {
+        const auto id = static_cast<std::size_t>(g.id[k]);
+        if (f.at_grains.dry[id] != 0) return;
+        const Vec3 without = force_without_reaction(f, local_fluid(f, id), 2.0 * g.radius[k], system.domain.gravity);
+        const bool alone =
+            g.mobility[k] > 0.0 && system.groups[static_cast<std::size_t>(g.group[k])].motion == Motion::free;
+        const Vec3 received = alone ? f.forcing.impulse[k] : Vec3(dt * f.last_fluid_force[id]);
+        c.owed[id] = received - dt * without - dt * drag[id].at(f.at_grains.u[id]);
+        if (!alone) return;
+        const Vec3 acted = received + (dt * g.mass[k]) * system.domain.gravity;
+        const Vec3 of_contacts = g.mass[k] * (g.v[k] - v_before[id]) - acted;
+        const double square = acted.squaredNorm();
+        const bool untouched = of_contacts.squaredNorm() <= 1e-16 * square || square == 0.0; // rounding
+        c.freedom[id] = untouched ? 1.0 : std::clamp(1.0 + of_contacts.dot(acted) / square, 0.0, 1.0);
+    });
+}
+
+} // namespace
+
+void couple(GridCoupling& c, GridFluid& fluid, const GrainSystem& grains) {
+    measure(c.weights, fluid);
+    set_places(c, fluid, grains, 0.0);
+    BoundedPorosity found = porosity(fluid, c.weights, c.places.volume, c.least_porosity);
+    c.bounded += found.bounded;
+    c.eps = std::move(found.eps);
+    if (c.two_way) fluid.eps = c.eps;
+}
+
+void advance_grid_coupled(GridCoupling& c, GridFluid& fluid, FluidOnGrains& f, GrainSystem& grains, double dt,
+                          std::int64_t step) {
+    set_places(c, fluid, grains, 0.5 * dt);
+    BoundedPorosity found = porosity(fluid, c.weights, c.places.volume, c.least_porosity);
+    c.bounded += found.bounded;
+    c.eps = std::move(found.eps);
+    if (c.two_way) change_porosity(fluid, c.eps);
+    gather(c, fluid, f.at_grains, needs_stress(f));
+    const std::vector<LinearDrag> drag = foresee(c, f, grains, dt);
+    if (c.two_way) push_fluid(c, fluid, drag, dt);
+    advance_grid(fluid, dt, step);
+
+    gather(c, fluid, f.at_grains, needs_stress(f));
+    const std::vector<Vec3> v_before = velocities(grains.grains);
+    const std::int64_t n = c.grain_steps;
+    update_forcing(f, grains, dt, n);
+    f.forcing.impulse.assign(grains.grains.size(), Vec3::Zero());
+    grains.step = (step - 1) * n; // its own steps; the run counts the fluid's
+    advance_grains(grains, n, dt / static_cast<double>(n), &f.forcing);
+    grains.step = step;
+    grains.time = dt * static_cast<double>(step);
+    complete_fluid_forces(f, grains, dt);
+    if (c.two_way) settle(c, f, grains, drag, v_before, dt);
+}
+
+} // namespace plumb

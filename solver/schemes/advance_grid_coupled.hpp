@@ -1,0 +1,41 @@
+// The step of a fluid on a grid with grains in it, each acting on the other.
+#pragma once
+
+#include "coupling/grid_weights.hpp"
+#include "coupling/weights.hpp"
+#include "schemes/fluid_on_grains.hpp"
+
+namespace plumb {
+
+/// What couples the grid and the grains besides the laws in FluidOnGrains.
+struct GridCoupling {
+    bool two_way = true;
+    bool own_volume = true;      // of a grain in the fluid fraction at it
+    double least_porosity = 0.0; // of a cell
+    GridWeights weights;
+    std::int64_t grain_steps = 1; // in one of the fluid
+
+    GrainPlaces places; // half a step ahead, by id
+    Field<double> eps;  // by cell, of these places; the fluid's own where it feels the grains
+
+    // by id, over the steps
+    std::vector<Vec3> owed; // what a grain has received and the fluid has not given yet, or the reverse [kg m/s]
+    // Share of what acts on a grain, contacts apart, that sets it in motion: 1 for a free grain, 0 for one that its
+    // neighbours hold. Of the last step.
+    std::vector<double> freedom;
+    std::int64_t bounded = 0; // cells of all steps that held more than they may
+};
+
+/// The porosity of the grains' present places, as if they had always been there.
+void couple(GridCoupling& coupling, GridFluid& fluid, const GrainSystem& grains);
+
+/// One step of `dt`. In the fluid's equations a grain is what its exchange law makes of it under the velocity at the
+/// end of the step, u', gathered where it will be half a step from now,
+///     drag = b (phi1 (u' - v) - dt phi2 g),    phi1, phi2 of z = b dt/m,
+/// with all forces but drag and contacts in g: linear in u', so that no step is too long for the slip's relaxation.
+/// What its neighbours hold does not follow: m is its mass over its freedom. The grains then take their own steps in
+/// the fluid found. What they receive otherwise than foreseen the fluid gives in its next step.
+void advance_grid_coupled(GridCoupling& coupling, GridFluid& fluid, FluidOnGrains& at_grains, GrainSystem& grains,
+                          double dt, std::int64_t step);
+
+} // namespace plumb
