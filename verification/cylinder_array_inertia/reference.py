@@ -89,7 +89,10 @@ def figures(runs):
     for axis, (name, run) in zip(axes[0], finest.items()):
         fluid, size = run.snapshot(-1)["fluid"], run.scene["domain"]["size"]
         speed = np.linalg.norm(fluid["v"][:, :2], axis=1)
-        dots = axis.scatter(fluid["x"][:, 0], fluid["x"][:, 1], c=speed / speed.max(), s=2.0, marker="s", cmap="viridis")
+        places = [np.unique(fluid["x"][:, axis_number], return_inverse=True) for axis_number in (0, 1)]
+        shown = np.full((len(places[1][0]), len(places[0][0])), np.nan)
+        shown[places[1][1], places[0][1]] = speed / speed.max()
+        dots = axis.pcolormesh(places[0][0], places[1][0], shown, cmap="viridis", shading="nearest")
         for wall in run.scene["wall"]:
             axis.add_patch(plt.Circle(wall["point"], wall["radius"], color="w", ec="k", lw=0.8))
         axis.set(title=name, aspect="equal", xlim=(0, size[0]), ylim=(0, size[1]), xticks=[], yticks=[])
