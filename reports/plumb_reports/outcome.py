@@ -39,6 +39,8 @@ def judged_case(case_folder, tier, plumb, planted, build, jobs):
 def tier_report(case, tier, plumb, jobs, folder, reference):
     """Report, figures and page of the tiers quick, full and campaign."""
     runs = executed(case, tier_plans(case, tier, folder / "runs"), plumb, jobs)
+    for run in runs:
+        run.judged_with = runs
     runs += bisected_variants(case, tier, folder / "runs", plumb, jobs, reference)
     judged = judgements(case, tier, runs, reference)
     precision = work_precision(case, runs, reference)

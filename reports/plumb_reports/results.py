@@ -21,6 +21,7 @@ class Run:
     series(name)                 (t [nt], v [nt] or [nt, n]) of a probe
     units(name)                  units of a probe's values
     snapshot(k)                  {"time": t, "grains": {"x": [n, 3], ...}, ...}; k may be negative
+    other(variant)               the run of another variant at the same sweep value, of the same judgement
     """
 
     def __init__(self, plan, parameter, exit_code, failure):
@@ -28,6 +29,7 @@ class Run:
         self.parameter = parameter
         self.outcome = None  # of a bisection: "stable", or why not
         self.exit = exit_code
+        self.judged_with = []  # all runs of the judgement; none for a twin
         self.failure = failure or self.missing_output()
 
     def missing_output(self):
@@ -52,6 +54,15 @@ class Run:
     def trials(self):
         """The single runs that this stands for: itself."""
         return [self]
+
+    def other(self, variant):
+        """The run of the variant `variant` at this run's sweep value; raises NotComparable when there is none to compare with."""
+        for run in self.judged_with:
+            if run.variant == variant and run.value in (self.value, None):
+                if run.failure:
+                    raise NotComparable(f"{variant}, which it is compared with: {run.failure}")
+                return run
+        raise NotComparable(f"there is no run of '{variant}' in this judgement to compare with")
 
     def derived(self, quantity):
         """A quantity that several runs decide together (bisection.Bisected); a single run has none."""

@@ -328,3 +328,34 @@ def test_cases_cmake(case, tmp_path):
     done = subprocess.run(["ctest", "--test-dir", project / "build", "-R", "relaxation.quick"], check=False,
                           capture_output=True, text=True)
     assert done.returncode == 0, done.stdout
+
+
+VARIANTS = '''
+[[variant]]
+name = "fine"
+
+[[variant]]
+name = "strong"
+set = {"fake.terminal" = 2.2}
+
+[[check]]
+id = "growth"
+quantity = "growth"
+metric = "value"
+variants = ["strong"]
+range = [1.05, 1.15]
+tiers = ["quick"]
+why = "A tenth more."
+'''
+
+
+@pytest.mark.parametrize("other, verdict, reason", [("fine", "pass", ""), ("none", "fail", "no run of 'none'")])
+def test_a_run_is_measured_against_another_variant(case, build, other, verdict, reason):
+    """At the same sweep value; one that is not there fails the check."""
+    case.append("case.toml", VARIANTS)
+    case.append("reference.py", f"\n\nalone = measure\n\n\ndef measure(quantity, run):\n    if quantity != 'growth':\n"
+                f"        return alone(quantity, run)\n    other = run.other('{other}')\n    assert other.value == run.value\n"
+                "    return run.series('v')[1][-1] / other.series('v')[1][-1]\n")
+    report = judged(case, build, "quick")[1]
+    found = next(c for c in report["checks"] if c["id"] == "growth")
+    assert found["verdict"] == verdict and reason in found["reason"]

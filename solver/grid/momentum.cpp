@@ -14,12 +14,30 @@ namespace plumb {
 
 namespace {
 
+/// Entries of a row of a matrix, in the order of their columns.
+struct Entries {
+    std::array<std::pair<int, double>, 26> entry{};
+    std::size_t size = 0;
+
+    void put(int column, double value) {
+        std::size_t at = size;
+        while (at > 0 && entry[at - 1].first >= column) --at;
+        if (at < size && entry[at].first == column) {
+            entry[at].second += value;
+            return;
+        }
+        std::copy_backward(entry.begin() + static_cast<std::ptrdiff_t>(at),
+                           entry.begin() + static_cast<std::ptrdiff_t>(size),
+                           entry.begin() + static_cast<std::ptrdiff_t>(size + 1));
+        entry[at] = {column, value};
+        ++size;
+    }
+};
+
 /// One row while it is made. What second upstream neighbours carry is kept apart, so that the preconditioner can do
 /// without them.
 struct Row {
-    using Entry = std::pair<int, double>;
-    std::array<Entry, 12> near{}, far{}; // of each of six sides two; `far`: second upstream, and what it changes
-    std::size_t nears = 0, fars = 0;
+    Entries near, far; // `far`: second upstream, and what it changes
     double diagonal = 0.0, far_diagonal = 0.0, known = 0.0;
 
     /// Adds `coefficient` (neighbour - own) to the force on the control volume; the neighbour is an unknown or, with
@@ -29,26 +47,54 @@ struct Row {
         if (column < 0)
             known += coefficient * value;
         else
-            near[nears++] = {column, -coefficient};
+            near.put(column, -coefficient);
     }
     void couple_far(int column, double coefficient, double value) {
         far_diagonal += coefficient;
         if (column < 0)
             known += coefficient * value;
         else
-            far[fars++] = {column, -coefficient};
+            far.put(column, -coefficient);
     }
 };
 
+/// Rows as a matrix.
+RowMatrix matrix_of(const std::vector<Row>& rows) {
+    const auto n = static_cast<Eigen::Index>(rows.size());
+    RowMatrix matrix(n, n);
+    int* begin = matrix.outerIndexPtr();
+    begin[0] = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) begin[k + 1] = begin[k] + static_cast<int>(rows[k].near.size);
+    matrix.resizeNonZeros(begin[n]);
+    parallel_for(rows.size(), [&](std::size_t k) {
+        const Entries& entries = rows[k].near;
+        for (std::size_t e = 0; e < entries.size; ++e) {
+            matrix.innerIndexPtr()[begin[k] + static_cast<int>(e)] = entries.entry[e].first;
+            matrix.valuePtr()[begin[k] + static_cast<int>(e)] = entries.entry[e].second;
+        }
+    });
+    return matrix;
+}
+
 class RowMaker {
 public:
-    RowMaker(const GridFluid& fluid, std::size_t component, const Velocity& carrier, bool carries = true)
+    /// `all`: what is carried and what a porous medium takes too, else friction alone.
+    RowMaker(const GridFluid& fluid, std::size_t component, const Velocity& carrier, bool all = true)
         : f(fluid), c(component), flux_of(carrier), cells(fluid.grid.cells()), faces(fluid.grid.faces(component)),
-          advects(carries) {}
+          friction_only(!all) {
+        if (friction_only) return;
+        for (std::size_t d = 0; d < f.dimensions(); ++d) {
+            const Block across = f.grid.faces(d);
+            flux[d].resize(across.size());
+            parallel_for(across.size(), [&](std::size_t k) {
+                flux[d][k] = f.density * open_area(f, d, across.place(k)) * carrier[d][k];
+            });
+        }
+    }
 
     Row row(const Place& p) const {
         Row made;
-        if (advects) resist(p, made);
+        if (!friction_only) resist(p, made);
         for (const int way : {0, 1}) {
             along(p, way, made);
             for (std::size_t d = 0; d < f.dimensions(); ++d)
@@ -73,7 +119,8 @@ private:
     const std::size_t c;
     const Velocity& flux_of;
     const Block cells, faces;
-    const bool advects;
+    const bool friction_only;
+    std::array<Field<double>, 3> flux; // mass through faces [kg/s]; empty where nothing is carried
 
     const Axis& axis(std::size_t d) const { return f.grid.axis[d]; }
     static Place with(Place p, std::size_t d, int value) {
@@ -84,8 +131,7 @@ private:
 
     /// Mass through a face across axis d [kg/s].
     double mass_flux(std::size_t d, const Place& face) const {
-        const std::size_t k = f.grid.faces(d).at(face);
-        return f.density * open_area(f, d, face) * flux_of[d][k];
+        return friction_only ? 0.0 : flux[d][f.grid.faces(d).at(face)];
     }
 
     void couple(Row& row, const Place& face, double coefficient) const {
@@ -100,7 +146,7 @@ private:
     };
 
     void carry(Row& row, double outward, const Place& other, const Second& second) const {
-        if (!advects) return;
+        if (friction_only) return;
         const auto weight = [&](double reach) {
             return std::visit([&](const auto& law) { return law(outward, reach); }, f.advection);
         };
@@ -231,7 +277,7 @@ private:
         if (side.kind == GridSide::Kind::no_slip) row.couple(-1, friction, side.velocity[static_cast<Eigen::Index>(c)]);
         if (side.kind == GridSide::Kind::inflow) { // comes in without a velocity along the side
             row.couple(-1, friction, 0.0);
-            if (advects) row.couple(-1, std::max(-outward_flux(p, d, way), 0.0), 0.0);
+            if (!friction_only) row.couple(-1, std::max(-outward_flux(p, d, way), 0.0), 0.0);
         }
     }
 };
@@ -246,30 +292,17 @@ double outflow_force(const GridFluid& f, std::size_t c, const Place& p) {
 }
 
 /// The matrix of the rows, and that of their near entries alone where they have others.
-void fill(MomentumRows& made, const std::vector<Row>& rows) {
-    std::vector<Eigen::Triplet<double, int>> entries;
-    entries.reserve(13 * rows.size());
-    const auto size = static_cast<Eigen::Index>(rows.size());
-    const auto set = [&](RowMatrix& matrix) {
-        matrix.resize(size, size);
-        matrix.setFromTriplets(entries.begin(), entries.end());
-    };
-    bool far = false;
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-        const auto at = static_cast<int>(k);
-        for (std::size_t e = 0; e < rows[k].nears; ++e)
-            entries.emplace_back(at, rows[k].near[e].first, rows[k].near[e].second);
-        entries.emplace_back(at, at, rows[k].diagonal);
-        far |= rows[k].fars > 0;
+void fill(MomentumRows& made, std::vector<Row>& rows) {
+    parallel_for(rows.size(), [&](std::size_t k) { rows[k].near.put(static_cast<int>(k), rows[k].diagonal); });
+    if (std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.far.size > 0; })) {
+        made.compact = matrix_of(rows);
+        parallel_for(rows.size(), [&](std::size_t k) {
+            for (std::size_t e = 0; e < rows[k].far.size; ++e)
+                rows[k].near.put(rows[k].far.entry[e].first, rows[k].far.entry[e].second);
+            rows[k].near.put(static_cast<int>(k), rows[k].far_diagonal);
+        });
     }
-    if (far) set(made.compact);
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-        const auto at = static_cast<int>(k);
-        for (std::size_t e = 0; e < rows[k].fars; ++e)
-            entries.emplace_back(at, rows[k].far[e].first, rows[k].far[e].second);
-        if (rows[k].far_diagonal != 0.0) entries.emplace_back(at, at, rows[k].far_diagonal);
-    }
-    set(made.matrix);
+    made.matrix = matrix_of(rows);
 }
 
 } // namespace
@@ -294,8 +327,7 @@ MomentumRows momentum_rows(const GridFluid& f, std::size_t c, const Velocity& ca
         made.mass[at] = maker.mass(p);
         made.room[at] = open_area(f, c, p) * f.grid.axis[c].dual_width(p[c]);
         made.known[at] = row.known + outflow_force(f, c, p);
-        const double drag = f.drag[c].empty() ? 0.0 : f.drag[c][face_of[k]];
-        row.diagonal += per_time * made.mass[at] + drag;
+        row.diagonal += per_time * made.mass[at] + (f.drag[c].empty() ? 0.0 : f.drag[c][face_of[k]]);
     });
     fill(made, rows);
     return made;
@@ -313,8 +345,8 @@ Field<double> friction_on_faces(const GridFluid& f, std::size_t c) {
         const Place p = faces.place(k);
         const Row row = maker.row(p);
         double sum = row.known - row.diagonal * f.u[c][k];
-        for (std::size_t e = 0; e < row.nears; ++e)
-            sum -= row.near[e].second * u[static_cast<std::size_t>(row.near[e].first)];
+        for (std::size_t e = 0; e < row.near.size; ++e)
+            sum -= row.near.entry[e].second * u[static_cast<std::size_t>(row.near.entry[e].first)];
         force[k] = sum / face_eps(f, c, p);
     });
     return force;

@@ -32,8 +32,7 @@ struct SaddleLayout {
 };
 SaddleLayout layout(const SaddleSystem& system);
 
-/// An approximate inverse: A by multigrid (of near neighbours only), and the
-/// Schur complement D A^-1 D^T by
+/// An approximate inverse: A by multigrid (without second upstream neighbours), and the Schur complement D A^-1 D^T by
 ///     S^-1 = L^-1 (D Q^-1 A Q^-1 D^T) L^-1,    L = D Q^-1 D^T,    Q = diag A
 /// (least-squares commutator: Elman et al. 2006, SIAM J. Sci. Comput. 27, 1651), which is a projection step where A is
 /// diagonal and knows friction, drag and advection where it is not. Cheap to make, so each step makes its own.

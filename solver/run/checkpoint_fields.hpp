@@ -9,6 +9,9 @@
 
 namespace plumb {
 
+inline constexpr std::int64_t format_version = 5; // to be raised with every change of the layout or of what it means
+inline constexpr const char* format_name = "plumb checkpoint";
+
 /// Fields of the smoothed particles in the order of ids; `visit` takes a name and the field.
 template <class Fluid, class Visit> void for_each_fluid_field(Fluid& f, Visit&& visit) {
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) {

@@ -129,7 +129,7 @@ double FluidGreatestPressure::operator()(const Sample& s) const {
     const GridFluid& f = *s.simulation.grid;
     double greatest = -std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < f.p.size(); ++k)
-        if (f.unknown_pressure[k] >= 0) greatest = std::max(greatest, f.p[k]);
+        if (f.unknown_pressure[k] >= 0 && f.open.cell[k] >= 0.5) greatest = std::max(greatest, f.p[k]);
     return greatest;
 }
 

@@ -60,9 +60,10 @@ struct FluidMeanPressure {
     double operator()(const Sample& s) const;
 };
 
+/// The pressure of a sliver that a wall leaves of a cell is hardly felt by anything, so it may be anything.
 struct FluidGreatestPressure {
     static constexpr std::string_view name = "fluid_greatest_pressure", units = "Pa";
-    static constexpr LawInfo info{"max p", "grid", "definition"};
+    static constexpr LawInfo info{"max p over the cells that are half open at least", "grid", "definition"};
     explicit FluidGreatestPressure(Table& /*table*/) {}
     static void bind(const Simulation& s, const Table& t);
     double operator()(const Sample& s) const;

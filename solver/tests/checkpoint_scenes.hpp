@@ -334,7 +334,7 @@ quantity = "fluid_kinetic_energy"
 inline const char* const grains_on_grid = R"(
 [domain]
 size = [0.006, 0.016, 0.002]
-periodic = [false, false, false]
+periodic = [true, false, false]
 gravity = [0.0, -9.81, 0.0]
 [fluid]
 method = "grid"
@@ -347,20 +347,6 @@ advection = "upwind"
 residual = 1e-6
 pressure = "dynamic"
 initial = {law = "rest"}
-[[wall]]
-name = "sides"
-shape = "plane"
-point = [0.0, 0.0, 0.0]
-normal = [1.0, 0.0, 0.0]
-slip = "no_slip"
-contact = "as_grains"
-[[wall]]
-name = "other_side"
-shape = "plane"
-point = [0.006, 0.0, 0.0]
-normal = [-1.0, 0.0, 0.0]
-slip = "no_slip"
-contact = "as_grains"
 [[wall]]
 name = "back"
 shape = "plane"
@@ -390,7 +376,7 @@ contact = "as_grains"
 name = "top"
 point = [0.003, 0.016, 0.001]
 normal = [0.0, -1.0, 0.0]
-profile = {law = "parabolic", mean_speed = 0.1, radius = 0.003}
+profile = {law = "uniform", speed = 0.1}
 [[outlet]]
 name = "bottom"
 point = [0.003, 0.0, 0.001]

@@ -125,7 +125,8 @@ TEST(CellFields, AreExactForWhatIsLinear) {
     for_each_place(f.grid.cells(), [&](const Place& p, std::size_t k) {
         if (p[1] < 2 || p[1] > 7 || p[2] < 2 || p[2] > 5) return; // away from the walls, which the field does not know
         EXPECT_TRUE(fields.gradient[k].isApprox(gradient, 1e-12));
-        // along the stretched axis the sum over the cells is exact, and each to the second order of their widths' growth
+        // along the stretched axis the sum over the cells is exact, and each to the second order of their widths'
+        // growth
         EXPECT_NEAR(fields.stress[k][0], 0.0, 1e-11);
         EXPECT_NEAR(fields.stress[k][1], -5.0, 0.05);
         EXPECT_NEAR(fields.stress[k][2], 3.0, 1e-11);
