@@ -8,6 +8,7 @@
 #include "run/time_loop.hpp"
 
 #include "checkpoint_scenes.hpp"
+#include "medium_scene.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
