@@ -151,14 +151,19 @@ class Cell:
         return total / self.area
 
 
+LONGEST = 4.0  # ratio of two forces that Newton's method bridges
+FIRST = 500.0
+
+
 @lru_cache(maxsize=None)
-def permeability(array, solid_fraction, force, angle=0.0, degree=9):
+def permeability(array, solid_fraction, force, angle=0.0, degree=7):
     """mu U/g over the lattice constant squared, for the dimensionless force rho g L^3/mu^2 at an angle to a side's normal, where U
     is the superficial velocity along the force. The Reynolds number of L is permeability times force."""
     cell = Cell(array, solid_fraction, degree)
     direction = np.array([math.cos(angle), math.sin(angle)])
-    u, now = cell.solve(direction, 0.0, 1.0), 0.0
-    for share in np.geomspace(1.0 / 64.0, 1.0, 7) if force > 0.0 else ():
-        now = share * force
-        u = cell.solve(direction, now, 1.0, start=u)  # u in units of g L^2/mu: the density is the force
+    u = cell.solve(direction, 0.0)  # in units of g L^2/mu, so that the force takes the place of the density
+    if force > 0.0:
+        steps = max(math.ceil(math.log(force / FIRST) / math.log(LONGEST)), 0)
+        for k in range(steps, -1, -1):
+            u = cell.solve(direction, force / LONGEST**k, start=u)
     return float(cell.superficial(u) @ direction)

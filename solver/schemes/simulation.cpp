@@ -189,6 +189,7 @@ void make_grid_alone(Table& root, Simulation& s) {
 /// The fluid on a grid and grains, each acting on the other.
 void make_grid_coupled(Table& root, Simulation& s) {
     make_grid(root, s);
+    if (s.grid->medium) root.table("fluid").fail("porosity", "is that of the [grains] in a scene with grains");
     read_grain_system(root, s.grains);
     s.grains.integrator = Integrator::velocity_verlet;
     Table coupling = root.table("coupling"), time = root.table("time"), fluid = root.table("fluid");

@@ -13,6 +13,7 @@
 namespace plumb {
 namespace {
 
+using fixture::checkpoint_scenes::grains_on_grid;
 using fixture::checkpoint_scenes::on_grid;
 
 /// A scene with one text in place of another.
@@ -52,6 +53,12 @@ TEST(GridScene, WhatCannotBeMeantIsRefused) {
     expect_refused(changed("point = [0.0, 1.0]", "point = [0.0, 0.0]"), {"upper end of y"});
     expect_refused(changed("periodic = [false, false]", "periodic = [true, false]"), {"point", "periodic"});
     expect_refused(changed("slip = \"no_slip\"\n[time]", "slip = \"free_slip\"\n[time]"), {"immersed", "cylinder"});
+    const std::string medium = "porosity = {law = \"uniform\", value = 0.5}\n";
+    expect_refused(changed("viscosity", medium + "viscosity"), {"fluid.resistance"});
+    expect_refused(changed("viscosity", medium + "resistance = {law = \"darcy\", permeability = 0.0}\nviscosity"),
+                   {"fluid.resistance.permeability"});
+    expect_refused(changed("viscosity", medium + "resistance = {law = \"none\"}\nviscosity", grains_on_grid),
+                   {"fluid.porosity", "grains"});
     expect_refused(changed("integrator = \"bdf2\"", "integrator = \"midpoint\""),
                    {"time.integrator", "implicit_euler"});
 }
