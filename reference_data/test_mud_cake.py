@@ -146,9 +146,10 @@ def test_injection_points_are_fifty_nine_apart_from_walls_and_each_other():
         assert (one[:, 2] - D / 2 > 0.0).all() and (one[:, 2] + D / 2 < 0.002).all()
         apart = np.linalg.norm(one[:, None] - one[None], axis=2) + np.eye(59)
         assert apart.min() > D
-    # The second half of a doubled rate enters half an interval later: those of the first have moved on by then.
-    moved = points - [0.0, 0.118 * 0.005, 0.0]
-    assert np.linalg.norm(moved[:, None] - other[None], axis=2).min() > D
+    # Both sets of a doubled rate enter at once; those of the raised set have passed the others' points at the next event.
+    assert np.linalg.norm(points[:, None] - other[None], axis=2).min() > D
+    for fall in (0.9e-3, 0.118 * 0.01, 1.9e-3):  # slowest beside the walls to fastest in the middle
+        assert np.linalg.norm(points[:, None] - (other - [0.0, fall, 0.0])[None], axis=2).min() > D
 
 
 # --- the table, the correlation, the claims ---
