@@ -56,6 +56,8 @@ Simulation settled_bed() {
     return simulation("dem_bed.toml", {fmt::format("grains.arrange.path='{}'", path)}, bed_drift);
 }
 
+Simulation driven_cavity() { return simulation("grid_cavity.toml", {}, Vec3::Zero()); }
+
 Memory memory(const GrainSystem& system) {
     Memory sum;
     for_each_field(system.grains, [&](const char* /*name*/, const auto& field) { sum.grains += bytes(field); });

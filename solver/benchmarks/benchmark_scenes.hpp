@@ -14,6 +14,9 @@ Simulation pressed_lattice();
 /// positions in the build folder under a name that contains the hash of the pouring scene.
 Simulation settled_bed();
 
+/// The driven cavity on a grid of 1024^2 cells.
+Simulation driven_cavity();
+
 /// Memory that the state and the lists of a system hold [bytes], measured by the capacities of their containers.
 struct Memory {
     std::size_t grains = 0; // what grows with the grains

@@ -26,15 +26,55 @@ struct Row {
         if (column < 0)
             known += coefficient * value;
         else
-            entry[size++] = {column, -coefficient};
+            put(column, -coefficient);
+    }
+
+    /// Adds to the entry of a column; they stay in order.
+    void put(int column, double value) {
+        std::size_t at = size;
+        while (at > 0 && entry[at - 1].first >= column) --at;
+        if (at < size && entry[at].first == column) {
+            entry[at].second += value;
+            return;
+        }
+        std::copy_backward(entry.begin() + static_cast<std::ptrdiff_t>(at),
+                           entry.begin() + static_cast<std::ptrdiff_t>(size),
+                           entry.begin() + static_cast<std::ptrdiff_t>(size + 1));
+        entry[at] = {column, value};
+        ++size;
     }
 };
+
+/// The rows as a matrix.
+RowMatrix matrix_of(const std::vector<Row>& rows) {
+    const auto n = static_cast<Eigen::Index>(rows.size());
+    RowMatrix matrix(n, n);
+    int* begin = matrix.outerIndexPtr();
+    begin[0] = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) begin[k + 1] = begin[k] + static_cast<int>(rows[k].size);
+    matrix.resizeNonZeros(begin[n]);
+    parallel_for(rows.size(), [&](std::size_t k) {
+        for (std::size_t e = 0; e < rows[k].size; ++e) {
+            matrix.innerIndexPtr()[begin[k] + static_cast<int>(e)] = rows[k].entry[e].first;
+            matrix.valuePtr()[begin[k] + static_cast<int>(e)] = rows[k].entry[e].second;
+        }
+    });
+    return matrix;
+}
 
 class RowMaker {
 public:
     RowMaker(const GridFluid& fluid, std::size_t component, const Velocity& carrier, bool carries = true)
-        : f(fluid), c(component), flux_of(carrier), cells(fluid.grid.cells()), faces(fluid.grid.faces(component)),
-          advects(carries) {}
+        : f(fluid), c(component), cells(fluid.grid.cells()), faces(fluid.grid.faces(component)), advects(carries) {
+        if (!advects) return;
+        for (std::size_t d = 0; d < f.dimensions(); ++d) {
+            const Block across = f.grid.faces(d);
+            flux[d].resize(across.size());
+            parallel_for(across.size(), [&](std::size_t k) {
+                flux[d][k] = f.density * open_area(f, d, across.place(k)) * carrier[d][k];
+            });
+        }
+    }
 
     Row row(const Place& p) const {
         Row made;
@@ -60,9 +100,9 @@ public:
 private:
     const GridFluid& f;
     const std::size_t c;
-    const Velocity& flux_of;
     const Block cells, faces;
     const bool advects;
+    std::array<Field<double>, 3> flux; // mass through faces [kg/s]; empty where nothing is carried
 
     const Axis& axis(std::size_t d) const { return f.grid.axis[d]; }
     static Place with(Place p, std::size_t d, int value) {
@@ -73,8 +113,7 @@ private:
 
     /// Mass through a face across axis d [kg/s].
     double mass_flux(std::size_t d, const Place& face) const {
-        const std::size_t k = f.grid.faces(d).at(face);
-        return f.density * open_area(f, d, face) * flux_of[d][k];
+        return advects ? flux[d][f.grid.faces(d).at(face)] : 0.0;
     }
 
     void carry(Row& row, double outward, int column, double value) const {
@@ -188,15 +227,9 @@ MomentumRows momentum_rows(const GridFluid& f, std::size_t c, const Velocity& ca
         made.room[at] = open_area(f, c, p) * f.grid.axis[c].dual_width(p[c]);
         made.known[at] = row.known + outflow_force(f, c, p);
         const double drag = f.drag[c].empty() ? 0.0 : f.drag[c][face_of[k]];
-        row.entry[row.size++] = {static_cast<int>(k), row.diagonal + per_time * made.mass[at] + drag};
+        row.put(static_cast<int>(k), row.diagonal + per_time * made.mass[at] + drag);
     });
-    std::vector<Eigen::Triplet<double, int>> entries;
-    entries.reserve(13 * n);
-    for (std::size_t k = 0; k < n; ++k)
-        for (std::size_t e = 0; e < rows[k].size; ++e)
-            entries.emplace_back(static_cast<int>(k), rows[k].entry[e].first, rows[k].entry[e].second);
-    made.matrix.resize(f.unknowns[c], f.unknowns[c]);
-    made.matrix.setFromTriplets(entries.begin(), entries.end());
+    made.matrix = matrix_of(rows);
     return made;
 }
 

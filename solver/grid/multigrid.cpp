@@ -1,6 +1,6 @@
 #include "grid/multigrid.hpp"
 
-#include "core/parallel.hpp"
+#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -9,39 +9,34 @@ namespace plumb {
 
 namespace {
 
-constexpr std::size_t block = 4096;       // rows of a sweep, and of a loop's share
-constexpr std::size_t few = 100;          // unknowns that are solved for directly
+constexpr std::size_t share = 4096; // numbers that a thread takes at once
+constexpr std::size_t few = 100;    // unknowns that are solved for directly
+constexpr double relaxation = 0.8;  // of Jacobi's sweeps: damps the upper half of a five-point stencil's errors best
 constexpr double coarse_reduction = 0.25; // of the residual on coarser levels, by
 constexpr int coarse_cycles = 2;          // cycles at most (Notay & Vassilevski)
 constexpr double stalled = 0.75;          // of the unknowns left by joining: no coarser level pays
 
-using Numbers = std::vector<float>;
-
 std::size_t at(int k) { return static_cast<std::size_t>(k); }
 
-/// Calls body(k) for all k of [0, n), with threads where that pays.
+/// Calls body(k) for all k of [begin, end), with threads where that pays.
 template <class Body> void for_all(std::size_t n, Body&& body) {
-    parallel_chunks(
-        n,
-        [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) body(k);
-        },
-        block);
+    const auto run = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) body(k);
+    };
+    parallel_chunks(n, run, share);
 }
 
-/// In eight sums next to each other, by blocks.
+/// In sixteen sums next to each other, by shares.
 double dot(const Numbers& a, const Numbers& b) {
-    std::vector<double> part((a.size() + block - 1) / block, 0.0);
-    const auto sum = [&](std::size_t begin, std::size_t end) {
-        std::array<double, 8> lane{};
-        std::size_t k = begin;
-        for (; k + lane.size() <= end; k += lane.size())
-            for (std::size_t q = 0; q < lane.size(); ++q)
-                lane[q] += static_cast<double>(a[k + q]) * static_cast<double>(b[k + q]);
-        for (; k < end; ++k) lane[0] += static_cast<double>(a[k]) * static_cast<double>(b[k]);
-        part[begin / block] = ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
+    std::vector<double> part((a.size() + share - 1) / share, 0.0);
+    const auto run = [&](std::size_t begin, std::size_t end) {
+        std::array<double, lanes> sum{};
+        for (std::size_t k = begin; k < end; k += lanes)
+            for (std::size_t q = 0; q < lanes; ++q)
+                sum[q] += static_cast<double>(a[k + q]) * static_cast<double>(b[k + q]);
+        for (const double s : sum) part[begin / share] += s;
     };
-    parallel_chunks(a.size(), sum, block);
+    parallel_chunks(a.size(), run, share);
     double total = 0.0;
     for (const double p : part) total += p;
     return total;
@@ -66,10 +61,12 @@ Eigen::MatrixXd full_matrix(const Equations& a) {
 
 } // namespace
 
-Multigrid::Multigrid(const RowMatrix& matrix) {
+Multigrid::Multigrid(const RowMatrix& matrix, int sweeps) : sweeps_(sweeps) {
     Equations fine = equations(matrix);
-    given_ = single(fine);
-    fine = without_positive_couplings(std::move(fine));
+    if (std::any_of(fine.value.begin(), fine.value.end(), [](double v) { return v > 0.0; })) {
+        given_ = slices(fine);
+        fine = without_positive_couplings(std::move(fine));
+    }
     while (fine.size() > few) {
         Aggregates fours = pairs(fine);
         const Equations half = joined(fine, fours);
@@ -83,110 +80,73 @@ Multigrid::Multigrid(const RowMatrix& matrix) {
         fine = joined(half, second);
     }
     add_level(fine);
-    if (fine.size() <= few) coarsest_.compute(full_matrix(fine));
-}
-
-Multigrid::Rows Multigrid::single(const Equations& a) {
-    return {{a.diagonal.begin(), a.diagonal.end()}, a.begin, a.column, {a.value.begin(), a.value.end()}};
+    if (fine.size() <= few) coarsest_ = full_matrix(fine).partialPivLu().inverse();
 }
 
 void Multigrid::add_level(const Equations& a) {
     Level& l = levels_.emplace_back();
-    const std::size_t n = a.size();
-    l.rows = single(a);
-    l.inverse_diagonal.resize(n);
-    for (std::vector<int>* place : {&l.block_begin, &l.upper, &l.block_end}) place->resize(n);
-    for (Numbers* v : {&l.right, &l.x, &l.left, &l.remains}) v->resize(n);
-    for_all(n, [&](std::size_t k) {
-        l.inverse_diagonal[k] = a.diagonal[k] > 0.0 ? static_cast<float>(1.0 / a.diagonal[k]) : 0.0F;
-        const auto first = a.column.begin() + a.begin[k], last = a.column.begin() + a.begin[k + 1];
-        const auto place = [&](std::size_t column) {
-            return static_cast<int>(std::lower_bound(first, last, static_cast<int>(column)) - a.column.begin());
-        };
-        l.block_begin[k] = place(k / block * block);
-        l.upper[k] = place(k);
-        l.block_end[k] = place((k / block + 1) * block);
+    l.rows = a.size();
+    l.matrix = slices(a);
+    for (Numbers* v : {&l.step, &l.right, &l.x, &l.left, &l.remains}) v->assign(padded_size(a.size()), 0.0F);
+    for_all(a.size(), [&](std::size_t k) {
+        if (a.diagonal[k] > 0.0) l.step[k + lanes] = static_cast<float>(relaxation / a.diagonal[k]);
     });
 }
 
 void Multigrid::join(Level& l, const Aggregates& g) {
-    l.joint = g.of;
+    l.joint.assign(l.x.size(), 0);
     l.member_begin.assign(at(g.count) + 1, 0);
-    for (const int of : g.of)
-        if (of >= 0) ++l.member_begin[at(of) + 1];
+    for (std::size_t k = 0; k < l.rows; ++k) {
+        if (g.of[k] < 0) continue;
+        l.joint[k + lanes] = g.of[k] + static_cast<int>(lanes);
+        ++l.member_begin[at(g.of[k]) + 1];
+    }
     for (std::size_t k = 1; k < l.member_begin.size(); ++k) l.member_begin[k] += l.member_begin[k - 1];
     l.member.resize(at(l.member_begin.back()));
     std::vector<int> next(l.member_begin.begin(), l.member_begin.end() - 1);
-    for (std::size_t k = 0; k < l.size(); ++k)
-        if (g.of[k] >= 0) l.member[at(next[at(g.of[k])]++)] = static_cast<int>(k);
+    for (std::size_t k = 0; k < l.rows; ++k)
+        if (g.of[k] >= 0) l.member[at(next[at(g.of[k])]++)] = static_cast<int>(k + lanes);
 }
 
-void Multigrid::multiply(const Rows& a, const Numbers& x, Numbers& y) {
-    for_all(x.size(), [&](std::size_t k) {
-        float sum = a.diagonal[k] * x[k];
-        for (int e = a.begin[k]; e < a.begin[k + 1]; ++e) sum += a.value[at(e)] * x[at(a.column[at(e)])];
-        y[k] = sum;
+void Multigrid::sweep(Level& l, const Numbers& right, Numbers& x) {
+    for_each_product(l.matrix, x, [&](std::size_t k, FloatPack ax) {
+        put_pack(l.left, k, pack_at(x, k) + pack_at(l.step, k) * (pack_at(right, k) - ax));
     });
-}
-
-/// From x = 0.
-void Multigrid::sweep_forwards(const Level& l, const Numbers& right, Numbers& x) const {
-    const auto rows = [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            float sum = right[k];
-            for (int e = l.block_begin[k]; e < l.upper[k]; ++e)
-                sum -= l.rows.value[at(e)] * x[at(l.rows.column[at(e)])];
-            x[k] = sum * l.inverse_diagonal[k];
-        }
-    };
-    parallel_chunks(l.size(), rows, block);
-}
-
-void Multigrid::sweep_backwards(Level& l, const Numbers& right, Numbers& x) const {
-    multiply(l.rows, x, l.left);
-    const auto rows = [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = end; k-- > begin;) {
-            float sum = right[k] - l.left[k];
-            for (int e = l.upper[k]; e < l.block_end[k]; ++e)
-                sum -= l.rows.value[at(e)] * l.left[at(l.rows.column[at(e)])];
-            l.left[k] = sum * l.inverse_diagonal[k]; // from here on the change of x
-            x[k] += l.left[k];
-        }
-    };
-    parallel_chunks(l.size(), rows, block);
+    l.left.swap(x);
 }
 
 void Multigrid::correct_from_next(std::size_t level, const Numbers& right, Numbers& x) {
     Level &l = levels_[level], &next = levels_[level + 1];
-    multiply(l.rows, x, l.left);
-    for_all(next.size(), [&](std::size_t k) {
+    for_each_product(l.matrix, x, [&](std::size_t k, FloatPack ax) { put_pack(l.left, k, pack_at(right, k) - ax); });
+    for_all(next.rows, [&](std::size_t k) {
         float sum = 0.0F;
-        for (int e = l.member_begin[k]; e < l.member_begin[k + 1]; ++e)
-            sum += right[at(l.member[at(e)])] - l.left[at(l.member[at(e)])];
-        next.right[k] = sum;
+        for (int e = l.member_begin[k]; e < l.member_begin[k + 1]; ++e) sum += l.left[at(l.member[at(e)])];
+        next.right[k + lanes] = sum;
     });
-    krylov(level + 1, next.rows, coarse_reduction, coarse_cycles);
-    for_all(l.size(), [&](std::size_t k) {
-        if (l.joint[k] >= 0) x[k] += next.x[at(l.joint[k])];
-    });
+    krylov(level + 1, next.matrix, coarse_reduction, coarse_cycles);
+    for_all(x.size(), [&](std::size_t k) { x[k] += next.x[at(l.joint[k])]; });
 }
 
 void Multigrid::cycle(std::size_t level, const Numbers& right, Numbers& x) {
-    sweep_forwards(levels_[level], right, x);
+    Level& l = levels_[level];
+    for_all(x.size(), [&](std::size_t k) { x[k] = l.step[k] * right[k]; }); // the first sweep, from 0
+    for (int k = 1; k < sweeps_; ++k) sweep(l, right, x);
     if (level + 1 < levels_.size()) correct_from_next(level, right, x);
-    sweep_backwards(levels_[level], right, x);
+    for (int k = 0; k < sweeps_; ++k) sweep(l, right, x);
 }
 
 /// The level's x from its right-hand side: generalised conjugate residuals (Eisenstat, Elman & Schultz 1983, SIAM J.
 /// Numer. Anal. 20, 345).
-void Multigrid::krylov(std::size_t level, const Rows& rows, double reduction, int most_cycles) {
+void Multigrid::krylov(std::size_t level, const Slices& matrix, double reduction, int most_cycles) {
     Level& l = levels_[level];
-    if (l.size() <= few) {
-        solve_coarsest(l.right, l.x);
+    if (l.rows <= few) {
+        solve_coarsest(l);
         return;
     }
-    l.search.resize(std::max(l.search.size(), at(most_cycles)));
-    l.image.resize(l.search.size());
+    if (l.search.size() < at(most_cycles)) {
+        l.search.resize(at(most_cycles));
+        l.image.resize(at(most_cycles));
+    }
     std::fill(l.x.begin(), l.x.end(), 0.0F);
     l.remains = l.right;
     std::vector<double> square;
@@ -194,10 +154,10 @@ void Multigrid::krylov(std::size_t level, const Rows& rows, double reduction, in
     const double goal = reduction * reduction * left;
     for (std::size_t k = 0; k < at(most_cycles) && left > goal; ++k) {
         Numbers &search = l.search[k], &image = l.image[k];
-        search.resize(l.size());
-        image.resize(l.size());
+        search.resize(l.x.size(), 0.0F);
+        image.resize(l.x.size(), 0.0F);
         cycle(level, l.remains, search);
-        multiply(rows, search, image);
+        for_each_product(matrix, search, [&](std::size_t p, FloatPack ax) { put_pack(image, p, ax); });
         for (std::size_t q = 0; q < k; ++q) {
             const double part = dot(image, l.image[q]) / square[q];
             add(image, -part, l.image[q]);
@@ -212,11 +172,11 @@ void Multigrid::krylov(std::size_t level, const Rows& rows, double reduction, in
     }
 }
 
-void Multigrid::solve_coarsest(const Numbers& right, Numbers& x) const {
-    const auto n = static_cast<Eigen::Index>(right.size());
+void Multigrid::solve_coarsest(Level& l) const {
+    const auto n = static_cast<Eigen::Index>(l.rows);
     if (n == 0) return;
-    const Eigen::VectorXd solution = coarsest_.solve(Eigen::Map<const Eigen::VectorXf>(right.data(), n).cast<double>());
-    for (std::size_t k = 0; k < x.size(); ++k) x[k] = static_cast<float>(solution[static_cast<Eigen::Index>(k)]);
+    const Eigen::VectorXd x = coarsest_ * Eigen::Map<const Eigen::VectorXf>(l.right.data() + lanes, n).cast<double>();
+    for (std::size_t k = 0; k < l.rows; ++k) l.x[k + lanes] = static_cast<float>(x[static_cast<Eigen::Index>(k)]);
 }
 
 Eigen::VectorXd Multigrid::solve(const Eigen::VectorXd& right, double reduction, int most_cycles) {
@@ -224,10 +184,12 @@ Eigen::VectorXd Multigrid::solve(const Eigen::VectorXd& right, double reduction,
     Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size());
     const double scale = right.size() > 0 ? right.cwiseAbs().maxCoeff() : 0.0; // may be smaller than a float can be
     if (!(scale > 0.0 && std::isfinite(scale))) return x;
-    for_all(l.size(),
-            [&](std::size_t k) { l.right[k] = static_cast<float>(right[static_cast<Eigen::Index>(k)] / scale); });
-    krylov(0, given_, reduction, most_cycles);
-    for_all(l.size(), [&](std::size_t k) { x[static_cast<Eigen::Index>(k)] = scale * static_cast<double>(l.x[k]); });
+    for_all(l.rows, [&](std::size_t k) {
+        l.right[k + lanes] = static_cast<float>(right[static_cast<Eigen::Index>(k)] / scale);
+    });
+    krylov(0, given_ ? *given_ : l.matrix, reduction, most_cycles);
+    for_all(l.rows,
+            [&](std::size_t k) { x[static_cast<Eigen::Index>(k)] = scale * static_cast<double>(l.x[k + lanes]); });
     return x;
 }
 

@@ -23,7 +23,7 @@ constexpr double contact_rate = 2e7; // grain steps per second with contacts
 constexpr double fluid_rate = 2e6;   // with a fluid: drag law and step weights of every grain
 constexpr double particle_rate = 4e6, particle_rate_plane = 1e7; // particle updates of smoothed particles
 constexpr double bytes_per_particle = 450.0;
-constexpr double cell_rate = 4e4, bytes_per_cell = 3000.0, bytes_per_fill = 60.0; // of a grid in the plane, a step
+constexpr double cell_rate = 2e5, bytes_per_cell = 2000.0; // of a grid, a step of ten iterations; 50 bytes each of them
 constexpr double weight_rate = 2e8, bytes_per_weight = 4.0; // of the coupling, each used three times a step
 constexpr double wake_cost = 1e-6;                          // of a grain's own wake [s]
 constexpr double step_cost = 2e-6;                          // fixed cost of a step [s]
@@ -173,14 +173,12 @@ Json grid_part(const Simulation& s) {
             {"Re_per_m", fastest / nu},           {"cell_Re", fastest * widest / nu}};
 }
 
-/// The factors of a plane problem take some n log n numbers; in space, n^(4/3).
 Json grid_cost_part(const Run& run) {
     const Simulation& s = run.simulation;
     const double n = static_cast<double>(s.grid->unknown_pressures), steps = static_cast<double>(total_steps(s.timing));
     const double grains = s.grid_coupling ? most_grains(s) * static_cast<double>(s.grid_coupling->grain_steps) : 0.0;
-    const double fill = s.grid->grid.dimensions == 2 ? n * std::log2(n + 2.0) : std::pow(n, 4.0 / 3.0);
     return {{"grain_steps", n * steps},
-            {"memory_bytes", bytes_of_program + bytes_per_cell * n + bytes_per_fill * fill},
+            {"memory_bytes", bytes_of_program + bytes_per_cell * n},
             {"wall_s", steps * (step_cost + n / cell_rate + grains / contact_rate)},
             {"nominal_rate", cell_rate},
             {"threads", thread_count()}};
