@@ -10,8 +10,10 @@ import pytest
 ROOT = Path(__file__).resolve().parent
 sys.path.insert(0, str(ROOT))
 
+from drag_laws.drag_laws import LAWS  # noqa: E402
 from tables import table  # noqa: E402
-from theory import clean_channel, cylinder_arrays, mud_cake  # noqa: E402
+from theory import clean_channel, cylinder_arrays, mud_cake, packed_beds  # noqa: E402
+from theory.bed_resistance import bed_drop  # noqa: E402
 from theory.clean_channel import Array  # noqa: E402
 
 D = 8e-4
@@ -146,9 +148,10 @@ def test_injection_points_are_fifty_nine_apart_from_walls_and_each_other():
         assert (one[:, 2] - D / 2 > 0.0).all() and (one[:, 2] + D / 2 < 0.002).all()
         apart = np.linalg.norm(one[:, None] - one[None], axis=2) + np.eye(59)
         assert apart.min() > D
-    # The second half of a doubled rate enters half an interval later: those of the first have moved on by then.
-    moved = points - [0.0, 0.118 * 0.005, 0.0]
-    assert np.linalg.norm(moved[:, None] - other[None], axis=2).min() > D
+    # Both sets of a doubled rate enter at once; those of the raised set have passed the others' points at the next event.
+    assert np.linalg.norm(points[:, None] - other[None], axis=2).min() > D
+    for fall in (0.9e-3, 0.118 * 0.01, 1.9e-3):  # slowest beside the walls to fastest in the middle
+        assert np.linalg.norm(points[:, None] - (other - [0.0, fall, 0.0])[None], axis=2).min() > D
 
 
 # --- the table, the correlation, the claims ---
@@ -218,3 +221,18 @@ def test_time_to_reach():
     t = np.array([0.0, 0.1, 0.2])
     assert mud_cake.time_to_reach(t, [1.0, 2.0, 3.0], 1.5) == pytest.approx(0.1)
     assert mud_cake.time_to_reach(t, [1.0, 2.0, 3.0], 3.5) == math.inf
+
+
+# --- what a drag law says of a bed ---
+
+
+def test_a_bed_of_grains_resists_by_its_law():
+    """In the open channel: the gradient of a uniform bed times its height; single spheres far less than Di Felice."""
+    lower, height, count, flow = 0.26, 0.01, 2000, 0.118 * 0.05 * 0.002
+    eps = 1.0 - count * math.pi * D**3 / 6.0 / (0.05 * 0.002 * height)
+    expected = packed_beds.pressure_gradient(LAWS["di_felice"], eps, 0.118, D, 1188.0, 2.797e-2) * height
+    found = bed_drop("di_felice", count, D, lower, height, Array(12), flow)
+    assert found == pytest.approx(expected)
+    assert 3.0 < found / bed_drop("morsi_alexander", count, D, lower, height, Array(12), flow) < 17.0
+    assert bed_drop("di_felice", 0, D, lower, 0.0, Array(12), flow) == 0.0
+    assert math.isnan(bed_drop("di_felice", 10000, D, lower, height, Array(12), flow))
