@@ -381,8 +381,8 @@ least_porosity = 0.3
 self_disturbance = "none"
 suspension_viscosity = "none"
 [time]
-end = 0.3
-output_interval = 0.05
+end = 0.1
+output_interval = 0.025
 integrator = "bdf2"
 step = 5e-4
 grain_step = "auto"
