@@ -12,7 +12,7 @@ from theory import clean_channel  # noqa: E402
 from theory.clean_channel import DEPTH, MEAN, REFERENCE_PRESSURE, Array  # noqa: E402
 
 UNITS = {"pressure": "Pa", "limit": "Pa", "ratio_limit": "1", "interval": "1", "order": "1", "creeping_drop": "Pa", "mass": "1", "drift": "1",
-         "over_half": "1", "excess": "1"}
+         "over_half": "1", "width_ratio": "1", "excess": "1"}
 BASE = "channel_12_3"
 
 
@@ -38,6 +38,8 @@ def reference(quantity, scene, t):
         return 0.0
     if quantity == "creeping_drop" or (quantity == "limit" and scene["fluid"]["advection"] == "none"):
         return clean_channel.creeping_drop(Array(12))
+    if quantity == "width_ratio":
+        return clean_channel.creeping_drop(Array(12, clean_channel.CHANNEL)) / clean_channel.creeping_drop(Array(12))
     if quantity in ("limit", "pressure"):
         return REFERENCE_PRESSURE
     if quantity == "ratio_limit":
@@ -93,6 +95,7 @@ def measure(quantity, run):
         "mass": lambda r: max(abs(last(r, name) / last(r, "flow_in") - 1.0) for name in ("flow_throat", "flow_out")),
         "drift": lambda r: float(np.ravel(r.series("pressure")[1])[-1] / np.ravel(r.series("pressure")[1])[-2] - 1.0),
         "over_half": over_base,
+        "width_ratio": over_base,
         "excess": lambda r: pressure(r) / limit_of(r, "column_12_24").value - 1.0,
     }
     return known[quantity](run) if quantity in known else NotImplemented
