@@ -84,7 +84,7 @@ void advance_grid(GridFluid& f, double dt, std::int64_t step) {
     f.iterations += report.iterations;
     f.greatest_residual = std::max(f.greatest_residual, report.residual);
     if (!(report.residual <= 2.0 * f.residual))
-        throw Diverged(step, time, "residual of the fluid's equations", 0, report.residual,
+        throw Diverged(step, time, "residual of the fluid's equations", -1, report.residual,
                        "the step's linear equations were not solved");
     if (f.second_order) f.u_before = f.u;
     for (std::size_t c = 0; c < f.dimensions(); ++c)

@@ -200,6 +200,12 @@ void make_grid_coupled(Table& root, Simulation& s) {
     couple(*s.grid_coupling, *s.grid, s.grains);
     drive(coupling, *s.grid, *s.fluid, *s.grid_coupling, s.grains);
     s.timing = timing(time, grid_limits(*s.grid), probe_intervals(root));
+    for (std::size_t q = 0; q < s.grains.injectors.size();
+         ++q) // grains enter between the fluid's steps, one at a point
+        if (s.grains.injectors[q].interval < s.timing.dt * (1.0 - 1e-9))
+            root.tables("injector")[q].fail(
+                "interval", fmt::format("is shorter than the fluid's step of {:.6g} s: grains would wait and be fewer",
+                                        s.timing.dt));
     s.grid_coupling->grain_steps = grain_steps(time, s.timing.dt, grain_limits(s.grains, greatest_speed(*s.grid)));
     set_inertia(*s.fluid, s.grains, s.timing.dt);
     start(s.grains, s.timing.dt / static_cast<double>(s.grid_coupling->grain_steps));

@@ -63,6 +63,17 @@ TEST(GridScene, WhatCannotBeMeantIsRefused) {
                    {"time.integrator", "implicit_euler"});
 }
 
+TEST(GridScene, GrainsAreNotInjectedFasterThanTheFluidSteps) {
+    EXPECT_NO_THROW(simulation(changed("interval = 0.01", "interval = 5e-4", grains_on_grid)));
+    expect_refused(changed("interval = 0.01", "interval = 2.5e-4", grains_on_grid), {"injector[0].interval", "step"});
+    expect_refused(changed("[[outlet]]\nname = \"bottom\"\npoint = [0.003, 0.0, 0.001]\nnormal = [0.0, 1.0, 0.0]\n"
+                           "pressure = 0.0",
+                           "[[wall]]\nname = \"floor\"\nshape = \"plane\"\npoint = [0.0, 0.0, 0.0]\n"
+                           "normal = [0.0, 1.0, 0.0]\nslip = \"no_slip\"\ncontact = \"as_grains\"",
+                           grains_on_grid),
+                   {"injector", "outlet"});
+}
+
 /// Sum over a side of the box of speed times open area, along the axis [m3/s].
 double flux(const GridFluid& f, std::size_t c, int face) {
     double sum = 0.0;
