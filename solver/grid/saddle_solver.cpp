@@ -58,14 +58,13 @@ VectorXd product(const SaddleSystem& s, const SaddleLayout& at, const VectorXd& 
 SaddleSystem saddle_system(const GridFluid& f, const Velocity& carrier, double per_time) {
     SaddleSystem s;
     s.dimensions = f.dimensions();
-    s.closed = true;
+    s.closed = !has_outflow(f);
     double momentum = 0.0, mass = 0.0;
     for (std::size_t c = 0; c < s.dimensions; ++c) {
         s.momentum[c] = momentum_rows(f, c, carrier, per_time);
         s.divergence[c] = divergence_rows(f, c);
         momentum += s.momentum[c].matrix.diagonal().squaredNorm();
         mass += s.divergence[c].squaredNorm();
-        for (const GridSide& side : f.sides[c]) s.closed &= side.kind != GridSide::Kind::outflow;
     }
     s.pressure_scale = std::sqrt(momentum / mass);
     for (std::size_t c = 0; c < s.dimensions; ++c) {

@@ -1,7 +1,6 @@
 #include "schemes/advance_coupled.hpp"
 
 #include "core/parallel.hpp"
-#include "dem/advance_grains.hpp"
 #include "schemes/advance_fluid.hpp"
 
 namespace plumb {
@@ -102,14 +101,7 @@ void advance_coupled(Coupling& c, SphFluid& fluid, FluidOnGrains& at_grains, Gra
     c.clamped += gather(c.weights, fluid, c.mass, c.two_way, at_grains.at_grains);
     take_out_own(c, grains, at_grains.at_grains);
 
-    const std::int64_t n = c.grain_steps;
-    update_forcing(at_grains, grains, dt, n);
-    at_grains.forcing.impulse.assign(grains.grains.size(), Vec3::Zero());
-    grains.step = (step - 1) * n; // its own steps; the run counts the fluid's
-    advance_grains(grains, n, dt / static_cast<double>(n), &at_grains.forcing);
-    grains.step = step;
-    grains.time = dt * static_cast<double>(step);
-    complete_fluid_forces(at_grains, grains, dt);
+    advance_gathered(at_grains, grains, dt, step, c.grain_steps);
 
     if (c.two_way) {
         const std::vector<Vec3> force = force_on_fluid(at_grains, grains, dt);

@@ -1,7 +1,6 @@
 #include "schemes/advance_grid_coupled.hpp"
 
 #include "core/parallel.hpp"
-#include "dem/advance_grains.hpp"
 #include "schemes/advance_grid.hpp"
 
 #include <algorithm>
@@ -78,17 +77,6 @@ bool needs_stress(const FluidOnGrains& f) {
     });
 }
 
-LocalFluid local_fluid(const FluidOnGrains& f, std::size_t id) {
-    LocalFluid local;
-    local.u = f.at_grains.u[id];
-    local.acceleration = (f.at_grains.stress[id] - f.mean_gradient) / f.density;
-    if (f.at_grains.wants_gradient) local.gradient = f.at_grains.gradient[id];
-    local.eps = f.at_grains.eps[id];
-    local.density = f.density;
-    local.viscosity = f.viscosity;
-    return local;
-}
-
 /// Forces on a grain that the fluid's own equation has already, or that nothing of the scene's fluid exerts: the stress
 /// on its volume, which the fluid keeps on its own share, a mean gradient, buoyancy [N].
 Vec3 force_without_reaction(const FluidOnGrains& f, const LocalFluid& local, double d, const Vec3& gravity) {
@@ -110,7 +98,7 @@ LinearDrag linear_drag(const FluidOnGrains& f, const GrainSystem& system, double
     const Grains& g = system.grains;
     const auto id = static_cast<std::size_t>(g.id[k]);
     const double d = 2.0 * g.radius[k];
-    const LocalFluid local = local_fluid(f, id);
+    const LocalFluid local = gathered_fluid(f, id);
     const auto resistance = [&](double slip) {
         return drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip);
     };
@@ -173,7 +161,7 @@ void settle(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, 
     parallel_for(g.size(), [&](std::size_t k) {
         const auto id = static_cast<std::size_t>(g.id[k]);
         if (f.at_grains.dry[id] != 0) return;
-        const Vec3 without = force_without_reaction(f, local_fluid(f, id), 2.0 * g.radius[k], system.domain.gravity);
+        const Vec3 without = force_without_reaction(f, gathered_fluid(f, id), 2.0 * g.radius[k], system.domain.gravity);
         const bool alone =
             g.mobility[k] > 0.0 && system.groups[static_cast<std::size_t>(g.group[k])].motion == Motion::free;
         const Vec3 received = alone ? f.forcing.impulse[k] : Vec3(dt * f.last_fluid_force[id]);
@@ -212,14 +200,7 @@ void advance_grid_coupled(GridCoupling& c, GridFluid& fluid, FluidOnGrains& f, G
 
     gather(c, fluid, f.at_grains, needs_stress(f));
     const std::vector<Vec3> v_before = velocities(grains.grains);
-    const std::int64_t n = c.grain_steps;
-    update_forcing(f, grains, dt, n);
-    f.forcing.impulse.assign(grains.grains.size(), Vec3::Zero());
-    grains.step = (step - 1) * n; // its own steps; the run counts the fluid's
-    advance_grains(grains, n, dt / static_cast<double>(n), &f.forcing);
-    grains.step = step;
-    grains.time = dt * static_cast<double>(step);
-    complete_fluid_forces(f, grains, dt);
+    advance_gathered(f, grains, dt, step, c.grain_steps);
     if (c.two_way) settle(c, f, grains, drag, v_before, dt);
 }
 

@@ -13,12 +13,6 @@ namespace plumb {
 
 namespace {
 
-double largest_diameter(const GrainSystem& system) {
-    double d = 0.0;
-    for (const double r : system.grains.radius) d = std::max(d, 2.0 * r);
-    return d;
-}
-
 /// A law that differs from grain to grain keeps a table for every size.
 void check_number_of_sizes(const Table& coupling, const GrainSystem& system) {
     constexpr std::size_t most = 256; // 4 MB of tables, some seconds to make them
@@ -87,6 +81,17 @@ Vec3 balancing_gradient(const SphFluid& fluid, const FluidOnGrains& on_grains, c
 }
 
 } // namespace
+
+double largest_diameter(const GrainSystem& system) {
+    double d = 0.0;
+    for (const double r : system.grains.radius) d = std::max(d, 2.0 * r);
+    for (const Injector& injector : system.injectors) {
+        for (const double one : injector.point_diameter) d = std::max(d, one);
+        if (injector.point_diameter.empty())
+            d = std::max(d, std::visit([](const auto& law) { return law.largest(); }, injector.diameter));
+    }
+    return d;
+}
 
 Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem& grains) {
     if (!fluid.open_sides.empty()) coupling.fail("direction", "grains know no open sides yet");

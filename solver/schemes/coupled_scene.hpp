@@ -9,6 +9,9 @@
 
 namespace plumb {
 
+/// Of the grains there are and of those that may be injected [m].
+double largest_diameter(const GrainSystem& grains);
+
 /// Kernels, their widths and the direction.
 Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem& grains);
 

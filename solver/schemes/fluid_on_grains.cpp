@@ -43,13 +43,8 @@ LocalFluid fluid_at_grain(const FluidOnGrains& f, const GrainSystem& system, std
     const Grains& g = system.grains;
     if (!f.gathers) return local_fluid(f, system.domain, g.x[k] + (0.5 * dt) * g.v[k], system.time + 0.5 * dt);
     const auto id = static_cast<std::size_t>(g.id[k]);
-    LocalFluid local;
-    local.u = f.at_grains.u[id] + (0.5 * dt) * f.at_grains.a[id];
-    local.acceleration = (f.at_grains.stress[id] - f.mean_gradient) / f.density;
-    if (f.at_grains.wants_gradient) local.gradient = f.at_grains.gradient[id];
-    local.eps = f.at_grains.eps[id];
-    local.density = f.density;
-    local.viscosity = f.viscosity;
+    LocalFluid local = gathered_fluid(f, id);
+    local.u += (0.5 * dt) * f.at_grains.a[id];
     return local;
 }
 
@@ -317,6 +312,17 @@ Vec3 force_from_outside(const FluidOnGrains& f, double diameter, const Vec3& gra
     return force;
 }
 
+LocalFluid gathered_fluid(const FluidOnGrains& f, std::size_t id) {
+    LocalFluid local;
+    local.u = f.at_grains.u[id];
+    local.acceleration = (f.at_grains.stress[id] - f.mean_gradient) / f.density;
+    if (f.at_grains.wants_gradient) local.gradient = f.at_grains.gradient[id];
+    local.eps = f.at_grains.eps[id];
+    local.density = f.density;
+    local.viscosity = f.viscosity;
+    return local;
+}
+
 void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt, std::int64_t parts) {
     const Grains& g = system.grains;
     const std::size_t n = g.size();
@@ -354,6 +360,16 @@ void complete_fluid_forces(FluidOnGrains& fluid, const GrainSystem& system, doub
         const double added = 1.0 / g.mobility[k] - g.mass[k];
         fluid.last_fluid_force[static_cast<std::size_t>(g.id[k])] -= (added / dt) * g.v[k];
     });
+}
+
+void advance_gathered(FluidOnGrains& fluid, GrainSystem& system, double dt, std::int64_t step, std::int64_t parts) {
+    update_forcing(fluid, system, dt, parts);
+    fluid.forcing.impulse.assign(system.grains.size(), Vec3::Zero());
+    system.step = (step - 1) * parts; // its own steps; the run counts the fluid's
+    advance_grains(system, parts, dt / static_cast<double>(parts), &fluid.forcing);
+    system.step = step;
+    system.time = dt * static_cast<double>(step);
+    complete_fluid_forces(fluid, system, dt);
 }
 
 } // namespace plumb

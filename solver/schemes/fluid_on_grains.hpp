@@ -55,6 +55,9 @@ FluidOnGrains read_fluid_on_grains(Table& fluid, Table& coupling);
 /// acts like one in steps of `dt`. Needed before the first step and after grains have been added, or when dt changes.
 void set_inertia(FluidOnGrains& fluid, GrainSystem& system, double dt);
 
+/// What has been gathered of a computed fluid at the grain `id`.
+LocalFluid gathered_fluid(const FluidOnGrains& fluid, std::size_t id);
+
 /// Drive and step weights of all grains for the step of `dt` that starts now, which they take in `parts`.
 void update_forcing(FluidOnGrains& fluid, GrainSystem& system, double dt, std::int64_t parts = 1);
 
@@ -64,5 +67,9 @@ Vec3 force_from_outside(const FluidOnGrains& fluid, double diameter, const Vec3&
 
 /// After the step: completes last_fluid_force, whose inertial part depends on the new velocities.
 void complete_fluid_forces(FluidOnGrains& fluid, const GrainSystem& system, double dt);
+
+/// The grains' part of step number `step` of a computed fluid, of `dt`: `parts` steps of their own in what has been
+/// gathered. What each receives is in the forcing's impulse.
+void advance_gathered(FluidOnGrains& fluid, GrainSystem& system, double dt, std::int64_t step, std::int64_t parts);
 
 } // namespace plumb

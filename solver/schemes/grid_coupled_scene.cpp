@@ -14,18 +14,6 @@ namespace plumb {
 
 namespace {
 
-/// Of the grains there are and of those that may be injected [m].
-double largest_diameter(const GrainSystem& system) {
-    double d = 0.0;
-    for (const double r : system.grains.radius) d = std::max(d, 2.0 * r);
-    for (const Injector& injector : system.injectors) {
-        for (const double one : injector.point_diameter) d = std::max(d, one);
-        if (injector.point_diameter.empty())
-            d = std::max(d, std::visit([](const auto& law) { return law.largest(); }, injector.diameter));
-    }
-    return d;
-}
-
 /// A width [m], or {times_diameter = x} of the largest grain.
 double read_width(Table& coupling, double diameter) {
     const char* const key = "kernel_width";
