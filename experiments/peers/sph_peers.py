@@ -6,8 +6,6 @@ import json
 import re
 import shutil
 import statistics
-import subprocess
-import sys
 from pathlib import Path
 
 PEERS = Path(__file__).resolve().parent
@@ -46,7 +44,6 @@ def bench(output_of, python, build, folder, repetitions, seconds):
     """Rates of both codes in turn, their ratio in each repetition; None where LIGGGHTS is not installed."""
     if not shutil.which("liggghts"):
         return None
-    subprocess.run(["cmake", "--build", build, "--target", "plumb"], check=True, stdout=sys.stderr)
     physics = check_physics(output_of, python, build / "bin/plumb", folder)
     output_of([python, PEERS / "sph_states.py", "start", SIDE, "start_sph.data"], folder)
     run = (output_of, folder, "start_sph.data")

@@ -32,17 +32,42 @@ bool rules_itself(const Equations& a, std::size_t row) {
     return a.diagonal[row] >= dominant * sum;
 }
 
-/// The free unknown most strongly coupled to `row` in the symmetric part, -1 where none is.
-int partner(const Equations& a, std::size_t row, const std::vector<int>& of) {
-    double most = 0.0, best = 0.0;
-    int found = -1;
+/// The unknowns most strongly coupled to `row` in the symmetric part, -1 where none is: of the free ones, and of those
+/// that are part of a joint unknown already.
+struct Partners {
+    int free = -1, taken = -1;
+};
+Partners partners(const Equations& a, std::size_t row, const std::vector<int>& of) {
+    double most = 0.0, best_free = 0.0, best_taken = 0.0;
+    Partners found;
     for_each_entry(a, row, [&](std::size_t e) {
         const auto k = static_cast<std::size_t>(a.column[e]);
         const double coupling = -(a.value[e] + entry(a, k, static_cast<int>(row)));
         most = std::max(most, coupling);
-        if (of[k] == -2 && coupling > best * (1.0 + 1e-6)) best = coupling, found = a.column[e];
+        if (of[k] == -2 && coupling > best_free * (1.0 + 1e-6)) best_free = coupling, found.free = a.column[e];
+        if (of[k] >= 0 && coupling > best_taken * (1.0 + 1e-6)) best_taken = coupling, found.taken = a.column[e];
     });
-    return best >= strong * most ? found : -1;
+    if (best_free < strong * most) found.free = -1;
+    if (best_taken < strong * most) found.taken = -1;
+    return found;
+}
+
+/// The rows of every joint unknown, by its number.
+struct Members {
+    std::vector<int> begin, row;
+};
+Members members(const Aggregates& g) {
+    Members m;
+    m.begin.assign(static_cast<std::size_t>(g.count) + 1, 0);
+    for (const int of : g.of)
+        if (of >= 0) ++m.begin[static_cast<std::size_t>(of) + 1];
+    std::partial_sum(m.begin.begin(), m.begin.end(), m.begin.begin());
+    m.row.resize(static_cast<std::size_t>(m.begin.back()));
+    std::vector<int> next(m.begin.begin(), m.begin.end() - 1);
+    for (std::size_t k = 0; k < g.of.size(); ++k)
+        if (g.of[k] >= 0)
+            m.row[static_cast<std::size_t>(next[static_cast<std::size_t>(g.of[k])]++)] = static_cast<int>(k);
+    return m;
 }
 
 /// Rows whose entries have been made in too long a store, moved together.
@@ -107,8 +132,13 @@ Aggregates pairs(const Equations& a) {
     });
     for (std::size_t k = 0; k < n; ++k) {
         if (made.of[k] != -2) continue;
+        const Partners near = partners(a, k, made.of);
+        if (near.free < 0 && near.taken >= 0) {
+            made.of[k] = made.of[static_cast<std::size_t>(near.taken)];
+            continue;
+        }
         made.of[k] = made.count;
-        if (const int other = partner(a, k, made.of); other >= 0) made.of[static_cast<std::size_t>(other)] = made.count;
+        if (near.free >= 0) made.of[static_cast<std::size_t>(near.free)] = made.count;
         ++made.count;
     }
     return made;
@@ -116,18 +146,13 @@ Aggregates pairs(const Equations& a) {
 
 Equations joined(const Equations& fine, const Aggregates& g) {
     const auto n = static_cast<std::size_t>(g.count);
-    std::vector<std::array<int, 2>> member(n, {-1, -1});
-    for (std::size_t k = 0; k < fine.size(); ++k)
-        if (g.of[k] >= 0) {
-            auto& m = member[static_cast<std::size_t>(g.of[k])];
-            m[m[0] < 0 ? 0 : 1] = static_cast<int>(k);
-        }
+    const Members m = members(g);
+    const auto begin = [&](std::size_t k) { return m.row.begin() + m.begin[k]; };
     std::vector<int> from(n + 1, 0), count(n, 0);
     for (std::size_t k = 0; k < n; ++k) {
         from[k + 1] = from[k];
-        for (const int m : member[k])
-            if (m >= 0)
-                from[k + 1] += fine.begin[static_cast<std::size_t>(m) + 1] - fine.begin[static_cast<std::size_t>(m)];
+        for (auto row = begin(k); row != begin(k + 1); ++row)
+            from[k + 1] += fine.begin[static_cast<std::size_t>(*row) + 1] - fine.begin[static_cast<std::size_t>(*row)];
     }
     Equations a;
     a.diagonal.assign(n, 0.0);
@@ -148,9 +173,8 @@ Equations joined(const Equations& fine, const Aggregates& g) {
             a.column[at] = column;
             a.value[at] = value;
         };
-        for (const int m : member[k]) {
-            if (m < 0) continue;
-            const auto row = static_cast<std::size_t>(m);
+        for (auto member = begin(k); member != begin(k + 1); ++member) {
+            const auto row = static_cast<std::size_t>(*member);
             a.diagonal[k] += fine.diagonal[row];
             size += fine.diagonal[row];
             for_each_entry(fine, row, [&](std::size_t e) {

@@ -28,7 +28,9 @@ Equations equations(const RowMatrix& matrix);
 /// symmetric.
 Equations without_positive_couplings(Equations a);
 
-/// For each unknown the joint unknown it becomes part of, -1 where its own diagonal rules its equation.
+/// For each unknown the joint unknown it becomes part of, -1 where its own diagonal rules its equation. Unknowns are
+/// joined in pairs; what finds no free partner is joined to the pair of the neighbour that it is coupled to most, since
+/// a cell that hangs on one neighbour alone, behind a slit, would else remain on every level to the coarsest.
 struct Aggregates {
     std::vector<int> of;
     int count = 0;

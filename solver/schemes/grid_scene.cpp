@@ -105,12 +105,13 @@ void read_numbers(Table& table, GridFluid& f) {
     f.eps = medium_porosity(f, 0.0);
 }
 
-/// Distance to the nearest of the walls, negative inside; any wall's own surface is met.
-double distance_to(const std::vector<WallBody>& walls, const Vec3& x) {
+/// Positive outside of all walls, else the distance to their surface, negative. How far the open places are is not
+/// asked, so that an array of cylinders is not visited as a whole for each of them.
+double depth_in(const std::vector<WallBody>& walls, const Vec3& x) {
+    constexpr double touching = std::numeric_limits<double>::min();
     double least = std::numeric_limits<double>::infinity();
     for (const WallBody& wall : walls)
-        wall.touch(x, std::numeric_limits<double>::infinity(), 0.0,
-                   [&](const WallPoint& point) { least = std::min(least, point.distance); });
+        wall.touch(x, touching, 0.0, [&](const WallPoint& point) { least = std::min(least, point.distance); });
     return least;
 }
 
@@ -134,8 +135,8 @@ void read_walls(Table& fluid, GridFluid& f, const std::vector<FluidWall>& walls,
                        fmt::format("\"grid\" has immersed walls that stick and rest only: \"{}\"", wall.body.name));
         immersed.push_back(wall.body);
     }
-    f.open = immersed.empty() ? open_grid(f.grid)
-                              : cut_plane(f.grid, [&](const Vec3& x) { return distance_to(immersed, x); });
+    f.open =
+        immersed.empty() ? open_grid(f.grid) : cut_plane(f.grid, [&](const Vec3& x) { return depth_in(immersed, x); });
 }
 
 std::optional<SideNumber> side_of(Table& table, const GridFluid& f) {
