@@ -5,7 +5,7 @@
 #   <case>.full       label full       minutes
 #   <case>.campaign   label campaign   hours; only for cases whose sweep has campaign values, or with a check that names this tier
 #
-# All carry the case's area as a second label. Choose with the label:  ctest -L quick,  ctest -L full.
+# All carry the case's areas as further labels. Choose with the label:  ctest -L quick,  ctest -L full.
 # A plain `ctest` runs quick and full (under two hours); campaign tests need to be asked for:
 #   ctest -C campaign -L campaign
 #
@@ -26,20 +26,28 @@ function(plumb_add_cases)
     endforeach()
 endfunction()
 
+# Sets `areas` to the names in the line  area = "..."  or  area = ["...", "..."]  of a case file.
+function(plumb_case_areas case_file areas)
+    file(STRINGS "${case_file}" area_line REGEX "^area[ \t]*=" LIMIT_COUNT 1)
+    string(REGEX REPLACE "#.*$" "" area_line "${area_line}")
+    string(REGEX MATCHALL "[\"'][^\"']+[\"']" quoted "${area_line}")
+    string(REGEX REPLACE "[\"']" "" names "${quoted}")
+    if(NOT names)
+        message(FATAL_ERROR "${case_file}: the line  area = \"...\"  is missing")
+    endif()
+    set(${areas} "${names}" PARENT_SCOPE)
+endfunction()
+
 # Adds the tests of one case.
 function(plumb_add_case folder case_file)
     get_filename_component(case "${folder}" NAME)
-    file(STRINGS "${case_file}" area_line REGEX "^area[ \t]*=" LIMIT_COUNT 1)
-    string(REGEX REPLACE "^area[ \t]*=[ \t]*[\"']([^\"']*)[\"'].*$" "\\1" area "${area_line}")
-    if(NOT area)
-        message(FATAL_ERROR "${case_file}: the line  area = \"...\"  is missing")
-    endif()
-    plumb_add_judgement("${case}" "${folder}" quick "quick;${area}" 300)
-    plumb_add_judgement("${case}" "${folder}" must_fail "quick;${area}" 300)
-    plumb_add_judgement("${case}" "${folder}" full "full;${area}" 7200)
+    plumb_case_areas("${case_file}" areas)
+    plumb_add_judgement("${case}" "${folder}" quick "quick;${areas}" 300)
+    plumb_add_judgement("${case}" "${folder}" must_fail "quick;${areas}" 300)
+    plumb_add_judgement("${case}" "${folder}" full "full;${areas}" 7200)
     file(STRINGS "${case_file}" campaign_line REGEX "^[^#\"]*campaign[ \t]*=|^tiers[ \t]*=.*\"campaign\"" LIMIT_COUNT 1)
     if(campaign_line)
-        plumb_add_judgement("${case}" "${folder}" campaign "campaign;${area}" 172800 CONFIGURATIONS campaign)
+        plumb_add_judgement("${case}" "${folder}" campaign "campaign;${areas}" 172800 CONFIGURATIONS campaign)
     endif()
 endfunction()
 

@@ -98,7 +98,7 @@ class Case:
     summary: str
     source: str
     reference: str
-    area: str
+    areas: tuple
     variants: tuple
     sweep: Sweep
     checks: tuple
@@ -136,13 +136,13 @@ def read_case(folder):
         if not (folder / name).is_file():
             raise CaseError(f"{folder / name}: is missing; a case has {', '.join(CASE_FILES)}")
     table = toml_table(folder / "case.toml")
-    summary, source, area = table.text("summary"), table.text("source"), table.name("area")
+    summary, source, areas = table.text("summary"), table.text("source"), table.names("area")
     reference = table.text("reference", choices=REFERENCES)
     sweep = read_sweep(table.table("sweep", "[sweep]"))
     variants = read_variants(table, sweep, folder)
     checks = read_checks(table, reference, variants, sweep)
     bisections = read_bisections(table, variants, sweep)
-    case = Case(folder.name, folder, summary, source, reference, area, variants, sweep, checks,
+    case = Case(folder.name, folder, summary, source, reference, areas, variants, sweep, checks,
                 read_must_fail(table, checks, variants, sweep), read_figures(table), bisections,
                 read_work_precision(table, checks, variants, bisections))
     table.finish()

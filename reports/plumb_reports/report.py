@@ -15,7 +15,7 @@ def report(case, tier, runs, check_entries, problems):
     words = [entry["verdict"] for entry in check_entries]
     return {
         "schema_version": SCHEMA_VERSION, "case": case.name, "tier": tier, "summary": case.summary,
-        "source": case.source, "area": case.area, "reference": case.reference,
+        "source": case.source, "area": ", ".join(case.areas), "reference": case.reference,
         "verdict": verdicts.FAIL if problems else verdicts.worst(words), "counts": verdicts.counts(words),
         "problems": problems, "cost": total_cost(tier, runs), "runs": [run_entry(run) for run in runs],
         "checks": check_entries, "provenance": provenance(runs)}

@@ -53,6 +53,17 @@ class Table:
             raise self.error(key, f"is {value!r}; a name consists of letters, digits and _ . + - only")
         return value
 
+    def names(self, key):
+        """One name, or a list of different ones, as a tuple."""
+        value = self.value(key)
+        found = value if isinstance(value, list) else [value]
+        for name in found:
+            if not isinstance(name, str) or not NAME_PATTERN.match(name):
+                raise self.error(key, f"has {name!r}; a name consists of letters, digits and _ . + - only")
+        if not found or len(set(found)) < len(found):
+            raise self.error(key, "must be a name, or a list of different ones")
+        return tuple(found)
+
     def number(self, key, default=REQUIRED):
         """A finite number."""
         value = self.value(key, default)

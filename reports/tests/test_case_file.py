@@ -1,5 +1,6 @@
 """case.toml: what is read, and one clear line for each mistake."""
 
+import subprocess
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -24,6 +25,21 @@ def test_the_fake_case(case):
     assert read.check("mean").tiers == ("quick",)
     assert read.check("terminal").tiers == ("quick",)  # it has no bound for the full tier
     assert read.must_fail[1].value == 0.0125
+
+
+def test_a_case_of_several_areas(case):
+    case.edit("case.toml", 'area = "fake"', 'area = ["fake", "other"]   # "two"')
+    assert read_case(case.folder).areas == ("fake", "other")
+
+
+@pytest.mark.parametrize("line, areas", [('"fake"', ["fake"]), ('["fake", "other"]   # "two"', ["fake", "other"])])
+def test_areas_are_labels_of_the_tests(case, tmp_path, line, areas):
+    case.edit("case.toml", 'area = "fake"', f"area = {line}")
+    module = Path(__file__).resolve().parents[1] / "cases.cmake"
+    script = tmp_path / "areas.cmake"
+    script.write_text(f'include("{module}")\nplumb_case_areas("{case.folder}/case.toml" found)\nmessage("areas=${{found}}")\n')
+    run = subprocess.run(["cmake", "-P", str(script)], capture_output=True, text=True, check=True)
+    assert f"areas={';'.join(areas)}" in run.stderr.splitlines()
 
 
 def test_variants_and_campaign(case):
@@ -102,6 +118,9 @@ MISTAKES = [
     ('reference = "analytic"', 'reference = "guessed"', "'reference' is 'guessed'"),
     ('area = "fake"', 'area = "fake"\ncolour = "red"', "'colour' is unknown"),
     ('area = "fake"', "area = ", "is not TOML"),
+    ('area = "fake"', 'area = ["fake", "fake"]', "'area' must be a name, or a list of different ones"),
+    ('area = "fake"', "area = []", "'area' must be a name, or a list of different ones"),
+    ('area = "fake"', 'area = ["a b"]', "'area' has 'a b'"),
     ("quick = 3", "quick = 9", "'quick' must be a whole number"),
     ("quick = 3", "quick = 2", "'order' needs at least 3 sweep values"),
     ("quick = 3", "quick = true", "'quick' must be a whole number"),

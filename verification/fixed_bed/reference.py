@@ -10,10 +10,10 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
 from drag_laws.drag_laws import LAWS  # noqa: E402
-from theory import packed_beds  # noqa: E402
+from theory import grid_weights, packed_beds  # noqa: E402
 
 PER_CELL = {"cubic": 1, "fcc": 4}
-UNITS = {"superficial": "m/s", "start_up": "m/s", "random": "m/s"}
+UNITS = {"superficial": "m/s", "start_up": "m/s", "random": "m/s", "cell_porosity": "1"}
 
 
 class Bed:
@@ -41,10 +41,24 @@ def averaged(bed, eps):
     return float(mobility.mean() - mobility.var() / (3.0 * mobility.mean()))
 
 
+def porosities(run, k):
+    """eps [n] of the particles or cells in snapshot k; a cell's density is that of what it holds of fluid."""
+    fluid = run.snapshot(k)["fluid"]
+    return fluid["eps"] if "eps" in fluid else fluid["rho"] / run.scene["fluid"]["density"]
+
+
 def superficial_of_snapshot(run):
-    """Mean of eps u over the particles, whose volumes are alike, m/s."""
-    fluid = run.snapshot(-1)["fluid"]
-    return float((fluid["eps"] * fluid["v"][:, 0]).mean())
+    """Mean of eps u over the particles or cells, whose volumes are alike, m/s."""
+    return float((porosities(run, -1) * run.snapshot(-1)["fluid"]["v"][:, 0]).mean())
+
+
+def porosity_error(run):
+    """Greatest difference of a cell's eps from a plain sum over all grains."""
+    snapshot, bed, side = run.snapshot(-1), Bed(run.scene), run.scene["domain"]["size"][0]
+    width = run.scene["coupling"]["kernel_width"]["times_diameter"] * bed.d
+    weights = grid_weights.gaussian_weights(snapshot["fluid"]["x"], snapshot["grains"]["x"], width, side)
+    eps = grid_weights.cell_porosity(weights, math.pi / 6.0 * bed.d**3, run.scene["fluid"]["spacing"] ** 3)
+    return float(np.abs(porosities(run, -1) - eps).max())
 
 
 def reference(quantity, scene, t):
@@ -65,7 +79,9 @@ def measure(quantity, run):
         t, u = run.series("fluid")
         return t, bed.eps * np.ravel(u)
     if quantity == "random":
-        return superficial_of_snapshot(run) / averaged(bed, run.snapshot(0)["fluid"]["eps"])
+        return superficial_of_snapshot(run) / averaged(bed, porosities(run, 0))
+    if quantity == "cell_porosity":
+        return porosity_error(run)
     return NotImplemented
 
 
@@ -92,7 +108,7 @@ def figures(runs):
 
     figure = Figure(figsize=(10.0, 3.8), layout="constrained")
     starts, steady = figure.subplots(1, 2)
-    lattices = [run for run in runs if not run.failure and not Bed(run.scene).random and run.variant != "step"]
+    lattices = [run for run in runs if not run.failure and not Bed(run.scene).random and run.variant not in ("step", "step_grid")]
     for index, run in enumerate(lattices):
         bed, (t, u) = Bed(run.scene), run.series("fluid")
         law = reference("start_up", run.scene, t)
