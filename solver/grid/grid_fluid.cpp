@@ -81,17 +81,24 @@ double open_area(const GridFluid& f, std::size_t c, const Place& face) {
 
 RowMatrix divergence_rows(const GridFluid& f, std::size_t c) {
     const Block cells = f.grid.cells(), faces = f.grid.faces(c);
-    std::vector<Eigen::Triplet<double, int>> entries;
+    RowMatrix rows(f.unknown_pressures, f.unknowns[c]);
+    rows.reserve(2 * static_cast<Eigen::Index>(f.unknown_pressures));
     for_each_place(cells, [&](const Place& p, std::size_t k) {
         const int row = f.unknown_pressure[k];
         if (row < 0) return;
         Place above = p;
         above[c] = f.grid.axis[c].face_above(p[c]);
-        if (const int u = f.unknown[c][faces.at(p)]; u >= 0) entries.emplace_back(row, u, -open_area(f, c, p));
-        if (const int u = f.unknown[c][faces.at(above)]; u >= 0) entries.emplace_back(row, u, open_area(f, c, above));
+        std::array<std::pair<int, double>, 2> entry{
+            {{f.unknown[c][faces.at(p)], 0.0}, {f.unknown[c][faces.at(above)], 0.0}}};
+        if (entry[0].first >= 0) entry[0].second = -open_area(f, c, p);
+        if (entry[1].first >= 0) entry[1].second = open_area(f, c, above);
+        if (entry[1].first < entry[0].first) std::swap(entry[0], entry[1]); // the first face of a periodic axis
+        rows.startVec(row);
+        if (entry[0].first == entry[1].first) return; // the only cell of a periodic axis: what enters leaves
+        for (const auto& [column, area] : entry)
+            if (column >= 0) rows.insertBack(row, column) = area;
     });
-    RowMatrix rows(f.unknown_pressures, f.unknowns[c]);
-    rows.setFromTriplets(entries.begin(), entries.end());
+    rows.finalize();
     return rows;
 }
 

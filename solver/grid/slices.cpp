@@ -32,28 +32,32 @@ Slices slices(const Equations& a) {
     Slices made;
     const std::size_t count = (a.size() + lanes - 1) / lanes;
     made.begin.assign(count + 1, 0);
+    std::vector<std::vector<int>> offsets((count + parallel_chunk - 1) / parallel_chunk); // of the slices of a chunk
     parallel_chunks(count, [&](std::size_t begin, std::size_t end) {
         std::vector<int> found;
+        std::vector<int>& all = offsets[begin / parallel_chunk];
         for (std::size_t s = begin; s < end; ++s) {
             find_diagonals(a, s, found);
             made.begin[s + 1] = static_cast<int>(found.size());
+            all.insert(all.end(), found.begin(), found.end());
         }
     });
     for (std::size_t s = 0; s < count; ++s) made.begin[s + 1] += made.begin[s];
     made.first.resize(static_cast<std::size_t>(made.begin[count]));
     made.value.assign(lanes * made.first.size(), 0.0F);
     parallel_chunks(count, [&](std::size_t begin, std::size_t end) {
-        std::vector<int> found;
+        const int* found = offsets[begin / parallel_chunk].data();
         for (std::size_t s = begin; s < end; ++s) {
-            find_diagonals(a, s, found);
             const auto from = static_cast<std::size_t>(made.begin[s]);
-            for (std::size_t q = 0; q < found.size(); ++q)
-                made.first[from + q] = found[q] + static_cast<int>((s + 1) * lanes);
+            const int* last = found + (made.begin[s + 1] - made.begin[s]);
+            for (const int* q = found; q != last; ++q)
+                made.first[from + static_cast<std::size_t>(q - found)] = *q + static_cast<int>((s + 1) * lanes);
             for_each_in_slice(a, s, [&](std::size_t row, int column, double value) {
-                const auto place =
-                    std::lower_bound(found.begin(), found.end(), column - static_cast<int>(row)) - found.begin();
-                made.value[(from + static_cast<std::size_t>(place)) * lanes + row % lanes] = static_cast<float>(value);
+                const int* place = std::lower_bound(found, last, column - static_cast<int>(row));
+                made.value[(from + static_cast<std::size_t>(place - found)) * lanes + row % lanes] =
+                    static_cast<float>(value);
             });
+            found = last;
         }
     });
     return made;
