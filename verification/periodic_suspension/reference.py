@@ -13,11 +13,21 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
 from drag_laws.drag_laws import di_felice  # noqa: E402
+from theory import grid_suspension, grid_weights  # noqa: E402
 from theory.packed_beds import richardson_zaki_exponent  # noqa: E402
 from theory.settling import archimedes, hindered_re  # noqa: E402
 
 PER_CELL = {"cubic": 1, "fcc": 4}
-UNITS = {"settling": "m/s", "start_up": "m/s", "at_grain": "1", "momentum": "1"}
+UNITS = {"settling": "m/s", "start_up": "m/s", "at_grain": "1", "at_grain_random": "1", "off_carried": "1", "momentum": "1"}
+
+
+def count_of(arrange, side):
+    """Number of grains in the box."""
+    if arrange["law"] == "random":
+        return arrange["count"]
+    if arrange["law"] == "file":
+        return len(np.loadtxt(HERE / arrange["path"], delimiter=",", skiprows=1))
+    return PER_CELL[arrange["kind"]] * round(side / arrange["spacing"]) ** 3
 
 
 class Suspension:
@@ -29,10 +39,15 @@ class Suspension:
         self.d, self.rho_p = grain["diameter"], grain["density"]
         self.g = -scene["domain"]["gravity"][2]
         self.side = scene["domain"]["size"][0]
-        self.spacing, self.smoothing = fluid["spacing"], fluid["smoothing"] * fluid["spacing"]
-        self.h = scene["coupling"]["kernel_width"]["times_smoothing"] * self.smoothing
-        self.volume = math.pi / 6.0 * self.d**3
-        self.grains = PER_CELL[arrange["kind"]] * round(self.side / arrange["spacing"]) ** 3
+        self.on_grid, self.random = fluid["method"] == "grid", arrange["law"] != "lattice"
+        self.spacing, self.volume = fluid["spacing"], math.pi / 6.0 * self.d**3
+        width = scene["coupling"]["kernel_width"]
+        if self.on_grid:
+            self.h = width["times_diameter"] * self.d  # standard deviation of the Gaussian
+        else:
+            self.smoothing = fluid["smoothing"] * fluid["spacing"]
+            self.h = width["times_smoothing"] * self.smoothing
+        self.grains = count_of(arrange, self.side)
         self.eps = 1.0 - self.grains * self.volume / self.side**3
 
     @property
@@ -73,7 +88,7 @@ def reference(quantity, scene, t):
         return bed.settling
     if quantity == "start_up":
         return bed.start_up(np.asarray(t, float))
-    if quantity == "at_grain":
+    if quantity in ("at_grain", "at_grain_random"):
         return 1.0
     raise KeyError(quantity)
 
@@ -123,6 +138,57 @@ def at_grain(run, k):
     return float((u.mean() - v.mean()) / Suspension(run.scene).slip(eps.mean(), held))
 
 
+# --- random beds on a grid: reference_data/theory/grid_suspension.py ---
+
+
+def grid_bed(bed, dt):
+    """The numbers of the theory; the slip of the law changes by its slope with the eps that a grain gathers, and a step of the exponential
+    exchange holds fluid and grain together by b phi_1(b dt/m), b = f_d/slip."""
+    step = 1e-3
+    slope = (bed.slip(bed.eps + step, bed.eps) - bed.slip(bed.eps - step, bed.eps)) / (2.0 * step)
+    weight = bed.effective_weight / bed.eps
+    inertia = bed.rho_p * bed.volume / dt
+    held = -inertia * math.expm1(-bed.effective_weight / bed.slip(bed.eps) / inertia)
+    return grid_suspension.Bed(bed.side, round(bed.side / bed.spacing), bed.h, bed.volume, weight, bed.rho, bed.rho_p, bed.mu,
+                               bed.slip(bed.eps), slope, held)
+
+
+def gathered_on_grid(run, k):
+    """(porosity, fluid velocity) [n] at the grains of snapshot k, by plain sums over all pairs."""
+    bed, snapshot = Suspension(run.scene), run.snapshot(k)
+    x, cells = snapshot["grains"]["x"], round(bed.side / bed.spacing)
+    of_cells = grid_weights.gaussian_weights(grid_weights.nodes(bed.side, cells), x, bed.h, bed.side)
+    of_faces = grid_weights.gaussian_weights(grid_weights.nodes(bed.side, cells, 2), x, bed.h, bed.side)
+    eps = grid_weights.cell_porosity(of_cells, bed.volume, bed.spacing**3)
+    return of_cells.T @ eps, of_faces.T @ snapshot["grid"]["u_z"].ravel()
+
+
+def slip_under_stress(bed, eps):
+    """The law's slip averaged over the porosities eps [n] of the grains, each with its own eps of the weight as drag."""
+    nodes = np.linspace(eps.min(), eps.max(), 17)
+    return float(np.interp(eps, nodes, [bed.slip(e, e / (1.0 - e) * (1.0 - bed.eps)) for e in nodes]).mean())
+
+
+def at_grain_random(run, k):
+    """Mean slip that the grains of a random bed gather over what the law gives at the porosities that they gather."""
+    eps, u = gathered_on_grid(run, k)
+    return float((u.mean() - run.snapshot(k)["grains"]["v"][:, 2].mean()) / slip_under_stress(Suspension(run.scene), eps))
+
+
+def carried(run, k):
+    """(measured, wakes, backflow): mean fluid velocity at the grains over that of the box, m/s, upwards."""
+    snapshot = run.snapshot(k)
+    measured = float(gathered_on_grid(run, k)[1].mean() - snapshot["grid"]["u_z"].mean())
+    return measured, *grid_suspension.carried(grid_bed(Suspension(run.scene), run.scene["time"]["step"]), snapshot["grains"]["x"], snapshot["time"])
+
+
+def off_carried(run, k):
+    """Distance from the theory over the larger of a tenth of itself and 0.5 % of the law's slip."""
+    measured, wakes, backflow = carried(run, k)
+    bed, theory = Suspension(run.scene), wakes + backflow
+    return abs(measured - theory) / max(0.1 * abs(theory), 0.005 * bed.slip(bed.eps))
+
+
 def momentum(run):
     """Vertical momentum of all at the end over the impulse that drag has exchanged."""
     bed, start, last = Suspension(run.scene), run.snapshot(0), run.snapshot(-1)
@@ -142,6 +208,10 @@ def measure(quantity, run):
         return t[late], w[late]
     if quantity == "at_grain":
         return at_grain(run, -1)
+    if quantity == "at_grain_random":
+        return at_grain_random(run, -1)
+    if quantity == "off_carried":
+        return off_carried(run, -1)
     if quantity == "momentum":
         return momentum(run)
     return NotImplemented
@@ -159,7 +229,7 @@ def hindered_figure(runs):
     figure = Figure(figsize=(10.0, 3.6), layout="constrained")
     names = ("air", "water", "glycerol-water")
     for axes, name in zip(figure.subplots(1, 3, sharey=True), names):
-        own = [run for run in runs if not run.failure and fluid_name(run) == name]
+        own = [run for run in runs if not run.failure and fluid_name(run) == name and not Suspension(run.scene).random]
         if not own:
             continue
         bed = Suspension(own[0].scene)
@@ -203,6 +273,22 @@ def lattice_figure(runs):
     axes.set_ylabel("slip over the law's at the mean eps [-]")
     axes.legend(fontsize="small")
     return figure
+
+
+def table(runs):
+    rows = []
+    for run in runs:
+        bed = None if run.failure else Suspension(run.scene)
+        if bed is None or not (bed.on_grid and bed.random):
+            continue
+        slip = bed.slip(bed.eps)
+        measured, wakes, backflow = carried(run, -1)
+        rows.append([run.variant, f"{bed.eps:.3f}", f"{bed.h / bed.d:.2f}", f"{at_grain_random(run, -1):.4f}",
+                     *(f"{100.0 * u / slip:.2f}" for u in (measured, wakes + backflow, wakes, backflow)),
+                     f"{superficial_slip(run)[1][-1] / bed.settling:.4f}"])
+    return {"columns": ["run", "eps", "width/d", "slip at grains over law's", "carried, % of slip", "theory", "wakes", "backflow",
+                        "settling speed over law's"],
+            "rows": rows, "caption": "Random beds on a grid: what their own wakes add to the velocity that grains gather (down: negative)."}
 
 
 def figures(runs):
