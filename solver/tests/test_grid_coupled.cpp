@@ -234,26 +234,20 @@ TEST(GridCoupled, CorrectedGrainFallsAsTheLawSays) {
     EXPECT_GT(speed("\"none\"", "1e-3", "\"bdf2\"") / u_t, 1.02);
 }
 
+// The lattice has to stay one, as in the test without the correction: in steps of 0.5 s, 350 tau_p, it lasts for one.
 TEST(GridCoupled, CorrectionKeepsMomentum) {
-    // The fluid's residual, 1e-10, is one of forces: in long steps the weights' impulse is what it counts against.
     for (const char* history : {"unsteady", "steady"})
-        for (const char* step : {"1e-4", "1e-2", "0.5"}) {
+        for (const auto& [step, steps] : {std::pair{"1e-4", 4}, std::pair{"1e-2", 4}, std::pair{"0.5", 1}}) {
             Simulation s = simulation({{"step", step},
                                        {"self", corrected(history)},
-                                       {"width", "2.0"},
-                                       {"fluid", "spacing = 2e-4\nadvection = \"central\"\npressure = "
-                                                 "\"dynamic\"\nresidual = 1e-12"},
                                        {"width", "2.0"},
                                        {"velocity", "[0.01, 0.0, 0.02]"},
                                        {"forces", "[\"buoyancy\", \"pressure_gradient\"]"}});
             const Vec3 before = momentum(s).sum;
-            const Grains& g = s.grains.grains;
-            const double impulse = static_cast<double>(g.size()) * g.mass[0] * 9.86 * std::stod(step);
-            for (int k = 0; k < 4; ++k) {
+            for (int k = 0; k < steps; ++k) {
                 advance(s, 1);
                 const Momentum now = momentum(s);
-                EXPECT_LT((now.sum - before).norm(), 1e-7 * (now.scale + impulse))
-                    << step << " " << history << " " << k;
+                EXPECT_LT((now.sum - before).norm(), 1e-7 * now.scale) << step << " " << history << " " << k;
             }
         }
 }
