@@ -2,10 +2,12 @@
 
 #include "core/packed_field.hpp"
 #include "core/parallel.hpp"
+#include "coupling/grid_symbols.hpp"
 #include "sph/symbols.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace plumb {
@@ -110,32 +112,81 @@ OseenBrinkman::OseenBrinkman(Table& t)
       advected(t.choice("advection", {"slip", "none"}) == "slip"),
       structure(make_family<StructureFactor>(t.law("structure"))) {}
 
-SelfDisturbance self_disturbance(const OseenBrinkman& law, const SphFluid& f, const Kernel& kernel,
-                                 const CouplingWidths& h, const PorosityLaw& porosity, double d) {
-    SelfDisturbance self{law, f.density, {}, {}, {}, {}, {}, 0.0, 0.0, 0.0, {}};
+namespace {
+
+/// What a scheme makes of waves of one number.
+struct WaveSymbols {
+    double spread, gather, room; // filters of the push, of what is gathered, and of the porosity
+    double inside;               // share of the directions in which there are such waves
+    double decay;                // [1/s]
+    double backflow;             // of the fluid that makes room, over the exact one
+    double settles;              // [1/s]
+};
+
+/// The sums over wave numbers, in units of the wider filter.
+template <class SymbolsAt>
+SelfDisturbance over_waves(const OseenBrinkman& law, double wider, double d, SymbolsAt&& at) {
+    SelfDisturbance self{law, 0.0, {}, {}, {}, {}, {}, 0.0, 0.0, 0.0, {}, {}};
     self.fraction = std::visit([](const auto& s) { return s.fraction; }, law.structure);
-    const double wider = std::max(h.spread, h.gather), ratio = std::log(last_wave / first_wave) / (wave_numbers - 1.0);
+    const double ratio = std::log(last_wave / first_wave) / (wave_numbers - 1.0);
     for (std::size_t n = 0; n < wave_numbers; ++n) {
         const double k = first_wave / wider * std::exp(ratio * static_cast<double>(n));
         // dk of the trapezium; the integrand of a steady wake is constant below the first wave
         const double width = k * ratio + (n == 0 ? k * std::exp(-0.5 * ratio) : 0.0);
         const double s_of_k = std::visit([&](const auto& s) { return s(k, d); }, law.structure);
-        const double measure = k * k * width / (2.0 * std::numbers::pi * std::numbers::pi) *
-                               kernel_transform(kernel, k * h.gather) * s_of_k;
-        const double own = kernel_transform(f.kernel, k * f.h);
-        const double p = measure * transform(porosity, kernel_transform(kernel, k * h.porosity), k, d);
+        const WaveSymbols symbols = at(k);
+        const double measure =
+            k * k * width / (2.0 * std::numbers::pi * std::numbers::pi) * symbols.gather * s_of_k * symbols.inside;
+        const double p = measure * symbols.room;
         self.k[n] = k;
-        self.decay[n] = transverse_decay(f, k);
-        self.share[n] = measure * kernel_transform(kernel, k * h.spread);
-        self.backflow[n] = own > 0.0 ? p / (3.0 * own) : 0.0;
-        self.settles[n] = f.sound_speed * f.sound_speed * k * k * own * own / std::max(self.decay[n], 1e-300);
+        self.decay[n] = symbols.decay;
+        self.share[n] = measure * symbols.spread;
+        self.backflow[n] = p * symbols.backflow / 3.0;
+        self.settles[n] = symbols.settles;
         self.own_spread += self.share[n];
         self.own_porosity += p;
     }
     return self;
 }
 
+} // namespace
+
+SelfDisturbance self_disturbance(const OseenBrinkman& law, const SphFluid& f, const Kernel& kernel,
+                                 const CouplingWidths& h, const PorosityLaw& porosity, double d) {
+    SelfDisturbance self = over_waves(law, std::max(h.spread, h.gather), d, [&](double k) {
+        const double own = kernel_transform(f.kernel, k * f.h), decay = transverse_decay(f, k);
+        return WaveSymbols{kernel_transform(kernel, k * h.spread),
+                           kernel_transform(kernel, k * h.gather),
+                           transform(porosity, kernel_transform(kernel, k * h.porosity), k, d),
+                           1.0,
+                           decay,
+                           own > 0.0 ? 1.0 / own : 0.0,
+                           f.sound_speed * f.sound_speed * k * k * own * own / std::max(decay, 1e-300)};
+    });
+    self.density = f.density;
+    return self;
+}
+
+SelfDisturbance self_disturbance(const OseenBrinkman& law, const GridSymbols& grid, double d) {
+    // Smoothed particles' kernels deviate by about half their h, so this is the unit that serves them.
+    const double unit = 2.0 * deviation_in_widths(grid.kernel) * grid.width;
+    SelfDisturbance self = over_waves(law, unit, d, [&](double k) {
+        const double filter = kernel_transform(grid.kernel, k * grid.width);
+        const GridShell shell = grid_shell(k, grid.cell);
+        return WaveSymbols{filter,
+                           filter,
+                           filter,
+                           shell.inside,
+                           grid.viscosity / grid.density * shell.square,
+                           1.0,
+                           std::numeric_limits<double>::infinity()};
+    });
+    self.density = grid.density * (1.0 - self.fraction); // a push moves what the other grains leave of the room
+    return self;
+}
+
 std::size_t wake_size() { return memory_size; }
+std::size_t waves_before_size() { return waves_size; }
 
 OwnFluid own_fluid(const SelfDisturbance& self, std::size_t id, double volume) {
     const auto m = memory_at(self.memory.data() + id * memory_size);
@@ -204,6 +255,96 @@ void remember(SelfDisturbance& self, const std::vector<Push>& pushes, double dt)
             m.force[c] = push.force[static_cast<Eigen::Index>(c)];
             m.slip[c] = push.slip[static_cast<Eigen::Index>(c)];
         }
+    });
+}
+
+namespace {
+
+/// exp(-i angle).
+Complex turned_back(const Pack& angle) {
+    Complex turn{};
+    for (int lane = 0; lane < pack_width; ++lane)
+        turn.re[lane] = std::cos(angle[lane]), turn.im[lane] = -std::sin(angle[lane]);
+    return turn;
+}
+
+/// Calls visit(id, memory) for all grains.
+template <class Visit> void for_all_wakes(SelfDisturbance& self, Visit&& visit) {
+    parallel_for(self.memory.size() / memory_size,
+                 [&](std::size_t id) { visit(id, memory_at(self.memory.data() + id * memory_size)); });
+}
+
+/// A = F/(r + i k.w) of all waves of a grain with its last slip.
+void settle_all(const SelfDisturbance& self, const Memory<double>& m, const Vec3& force, double screening) {
+    const double speed = self.law.advected ? Vec3(m.slip[0], m.slip[1], m.slip[2]).norm() : 0.0;
+    for (std::size_t n = 0; n < wave_numbers; ++n)
+        settle(m, n, force, broadcast<Pack>(self.k[n] * speed) * rule.c, self.decay[n] + screening);
+}
+
+} // namespace
+
+void turn_wakes(SelfDisturbance& self, double dt) {
+    for_all_wakes(self, [&](std::size_t id, const Memory<double>& m) {
+        for (std::size_t k = 0; k < backflow_size; ++k) m.backflow[k] = -m.slip[k % 3]; // it is there at once
+        const double speed = self.law.advected ? Vec3(m.slip[0], m.slip[1], m.slip[2]).norm() : 0.0;
+        if (self.law.steady || speed == 0.0) return;
+        Memory<double> before = m;
+        before.waves = self.before.data() + id * waves_size;
+        for (std::size_t n = 0; n < wave_numbers; ++n) {
+            const Complex turn = turned_back(broadcast<Pack>(self.k[n] * speed * dt) * rule.c);
+            for (const Memory<double>& of : {m, before})
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const Complex wave = turn * Complex{load(of.wave(n, c)), load(of.wave(n, 3 + c))};
+                    store(of.wave(n, c), wave.re);
+                    store(of.wave(n, 3 + c), wave.im);
+                }
+        }
+    });
+}
+
+std::vector<double> fade_wakes(SelfDisturbance& self, const std::vector<Push>& pushes, const WakeStep& step) {
+    std::vector<double> response(pushes.size(), 0.0);
+    const double of_last = (step.two_steps ? 2.0 : 1.0) / step.dt, of_before = (step.two_steps ? -0.5 : 0.0) / step.dt;
+    for_all_wakes(self, [&](std::size_t id, const Memory<double>& m) {
+        if (self.law.steady) {
+            const Vec3 slip(m.slip[0], m.slip[1], m.slip[2]);
+            const Vec3 along = slip.norm() > 0.0 ? Vec3(slip.normalized()) : Vec3::UnitZ();
+            settle_all(self, m, along, pushes[id].screening);
+            response[id] = own_fluid(self, id, 0.0).u.dot(along);
+            std::fill_n(m.waves, waves_size, 0.0);
+            return;
+        }
+        double* before = self.before.data() + id * waves_size;
+        for (std::size_t n = 0; n < wave_numbers; ++n) {
+            const double left = 1.0 / (step.per_time() + self.decay[n] + pushes[id].screening);
+            for (std::size_t k = 6 * n * pack_width; k < 6 * (n + 1) * pack_width; ++k) {
+                const double last = m.waves[k];
+                m.waves[k] = left * (of_last * last + of_before * before[k]);
+                before[k] = last;
+            }
+            response[id] += 2.0 / 3.0 * self.share[n] * left / self.density; // the mean of 1 - c^2
+        }
+    });
+    return response;
+}
+
+void push_wakes(SelfDisturbance& self, const std::vector<Push>& pushes, const WakeStep& step) {
+    for_all_wakes(self, [&](std::size_t id, const Memory<double>& m) {
+        const Push& push = pushes[id];
+        for (std::size_t c = 0; c < 3; ++c) m.force[c] = push.force[static_cast<Eigen::Index>(c)];
+        if (self.law.steady) return settle_all(self, m, push.force, push.screening);
+        for (std::size_t n = 0; n < wave_numbers; ++n) {
+            const double received = 1.0 / (step.per_time() + self.decay[n] + push.screening);
+            for (std::size_t c = 0; c < 3; ++c)
+                store(m.wave(n, c),
+                      load(m.wave(n, c)) + broadcast<Pack>(received * push.force[static_cast<Eigen::Index>(c)]));
+        }
+    });
+}
+
+void set_slips(SelfDisturbance& self, const std::vector<Push>& pushes) {
+    for_all_wakes(self, [&](std::size_t id, const Memory<double>& m) {
+        for (std::size_t c = 0; c < 3; ++c) m.slip[c] = pushes[id].slip[static_cast<Eigen::Index>(c)];
     });
 }
 

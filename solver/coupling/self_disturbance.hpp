@@ -14,11 +14,15 @@
 //                           dB/dt = (c_s k W^)^2/lambda (v - u - B), for pressure acts through the fluid's own kernel
 //                           W.
 //
+// A fluid on a grid is implicit in time. There the same waves take the fluid's own difference in time, over one step or
+// two, and what the push of the coming step will add is known beforehand, so that the fluid's equations can have it.
+//
 // Sources: Horwitz & Mani 2016, J. Comput. Phys. 318, 85; Balachandar, Liu & Lakhote 2019, J. Comput. Phys. 376, 160
 // (the idea); derived in verification/single_grain. Valid where |w| changes its direction slowly (the wake is turned
 // with it) and for h c_s/nu >> 1 (the pressure answers at once).
 #pragma once
 
+#include "coupling/grid_kernels.hpp"
 #include "coupling/structure_factors.hpp"
 #include "coupling/weights.hpp"
 
@@ -63,14 +67,25 @@ struct SelfDisturbance {
     double fraction = 0.0;                       // of the volume that other grains take
 
     std::vector<double> memory; // by id of the grain: see the .cpp
+    std::vector<double> before; // the waves a step before; of a fluid on a grid
 };
 
 /// For grains of diameter d [m] in a fluid of three dimensions.
 SelfDisturbance self_disturbance(const OseenBrinkman& law, const SphFluid& fluid, const Kernel& kernel,
                                  const CouplingWidths& widths, const PorosityLaw& porosity, double d);
 
-/// Numbers that are remembered of every grain.
+/// The same on a grid of cubes of `cell` [m], for one kernel of `width` [m]. The fluid around has the share of the room
+/// that the structure's grains leave, and no speed of sound.
+struct GridSymbols {
+    double density = 0.0, viscosity = 0.0; // [kg/m3], dynamic [Pa s]
+    double cell = 0.0, width = 0.0;        // [m]
+    GridKernel kernel;
+};
+SelfDisturbance self_disturbance(const OseenBrinkman& law, const GridSymbols& grid, double d);
+
+/// Numbers that are remembered of every grain, and of its waves before.
 std::size_t wake_size();
+std::size_t waves_before_size();
 
 /// Velocity [m/s] that grain `id` of volume V [m3] has given the fluid that it gathers, and the force per volume [N/m3]
 /// by its wake.
@@ -92,5 +107,27 @@ struct Push {
 
 /// Carries the wakes over a step dt [s] of pushes by id.
 void remember(SelfDisturbance& self, const std::vector<Push>& pushes, double dt);
+
+// --- for a fluid that is implicit in time: a step of it in four parts ---
+
+/// Its difference in time: over two steps (3 u' - 4 u + u_before)/(2 dt), or over one (u' - u)/dt.
+struct WakeStep {
+    double dt = 0.0; // [s]
+    bool two_steps = false;
+    double per_time() const { return (two_steps ? 1.5 : 1.0) / dt; }
+};
+
+/// The waves of all grains as they meet them after a move of dt with their last slips.
+void turn_wakes(SelfDisturbance& self, double dt);
+
+/// What is left of the waves at the end of a step, without the step's own push. Returns the velocity that each grain
+/// will gather of a push in the step, over it [m/(s N)]; `pushes` say what screens the waves.
+std::vector<double> fade_wakes(SelfDisturbance& self, const std::vector<Push>& pushes, const WakeStep& step);
+
+/// Adds the pushes of the step.
+void push_wakes(SelfDisturbance& self, const std::vector<Push>& pushes, const WakeStep& step);
+
+/// The slips after it, by id [m/s].
+void set_slips(SelfDisturbance& self, const std::vector<Push>& pushes);
 
 } // namespace plumb

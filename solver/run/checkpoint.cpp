@@ -193,6 +193,12 @@ void Loader::load_coupling(Coupling& coupling, const SphFluid& fluid) const {
 void Loader::load_coupling(GridCoupling& coupling, std::size_t n) const {
     read_field("coupling/owed", coupling.owed, n);
     read_field("coupling/freedom", coupling.freedom, n);
+    if (coupling.self) {
+        coupling.self->memory = file_.doubles("coupling/wakes");
+        coupling.self->before = file_.doubles("coupling/waves_before");
+        demand(coupling.self->memory.size() == n * wake_size(), "coupling/wakes");
+        demand(coupling.self->before.size() == n * waves_before_size(), "coupling/waves_before");
+    }
     coupling.bounded = integers("coupling/bounded", 1)[0];
 }
 

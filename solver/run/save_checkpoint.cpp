@@ -69,6 +69,10 @@ void write_grid(Hdf5Writer& file, const GridFluid& f) {
 void write_grid_coupling(Hdf5Writer& file, const GridCoupling& c) {
     write_field(file, "coupling/owed", c.owed);
     write_field(file, "coupling/freedom", c.freedom);
+    if (c.self) {
+        file.write("coupling/wakes", c.self->memory);
+        file.write("coupling/waves_before", c.self->before);
+    }
     file.write("coupling/bounded", std::vector<std::int64_t>{c.bounded});
 }
 

@@ -13,8 +13,6 @@ namespace {
 
 constexpr int most_iterations = 300; // a solve that takes more will not come to its end
 
-bool two_steps_known(const GridFluid& f) { return f.second_order && !f.u_before[0].empty(); }
-
 /// The velocity at the end of the step as the last steps continue.
 Velocity continued(const GridFluid& f) {
     Velocity u = f.u;
@@ -66,6 +64,8 @@ Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, doubl
 }
 
 } // namespace
+
+bool two_steps_known(const GridFluid& f) { return f.second_order && !f.u_before[0].empty(); }
 
 void advance_grid(GridFluid& f, double dt, std::int64_t step) {
     const double time = dt * static_cast<double>(step);

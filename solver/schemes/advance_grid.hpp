@@ -7,6 +7,9 @@
 
 namespace plumb {
 
+/// Whether the next step is of second order in time: the fluid is to be so, and two of its steps are known.
+bool two_steps_known(const GridFluid& fluid);
+
 /// One step, implicit in everything but the velocity that carries momentum, which is continued from the last steps:
 ///     M (3 u^n+1 - 4 u^n + u^n-1)/(2 dt) + C(2 u^n - u^n-1) u^n+1 + K u^n+1 - D^T p = f,    D u^n+1 = -V d(eps)/dt
 /// second order in dt, or with `second_order` false

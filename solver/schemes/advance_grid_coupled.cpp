@@ -1,5 +1,6 @@
 #include "schemes/advance_grid_coupled.hpp"
 
+#include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "schemes/advance_grid.hpp"
 
@@ -20,6 +21,10 @@ void set_places(GridCoupling& c, const GridFluid& fluid, const GrainSystem& syst
     c.places.volume.resize(g.size());
     c.owed.resize(g.size(), Vec3::Zero());
     c.freedom.resize(g.size(), 1.0);
+    if (c.self) {
+        c.self->memory.resize(g.size() * wake_size(), 0.0);
+        c.self->before.resize(g.size() * waves_before_size(), 0.0);
+    }
     parallel_for(g.size(), [&](std::size_t k) {
         const auto id = static_cast<std::size_t>(g.id[k]);
         c.places.x[id] = g.x[k] + ahead * g.v[k];
@@ -153,19 +158,34 @@ std::vector<Vec3> velocities(const Grains& g) {
     return v;
 }
 
-/// After the grains' steps: what each has received but for the forces without reaction, less what the fluid has given
-/// by `drag`, and how much of what acted moved it.
-void settle(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, const std::vector<LinearDrag>& drag,
+/// What the fluid has done in a step, by id: its force by the drag foreseen, and what it has of itself already [N].
+struct Given {
+    std::vector<Vec3> drag, without;
+};
+Given given_by_fluid(const FluidOnGrains& f, const GrainSystem& system, const std::vector<LinearDrag>& drag) {
+    const Grains& g = system.grains;
+    Given given{std::vector<Vec3>(g.size(), Vec3::Zero()), std::vector<Vec3>(g.size(), Vec3::Zero())};
+    parallel_for(g.size(), [&](std::size_t k) {
+        const auto id = static_cast<std::size_t>(g.id[k]);
+        if (f.at_grains.dry[id] != 0) return;
+        given.drag[id] = drag[id].at(f.at_grains.u[id]);
+        given.without[id] = force_without_reaction(f, gathered_fluid(f, id), 2.0 * g.radius[k], system.domain.gravity);
+    });
+    return given;
+}
+
+/// After the grains' steps: what each has received but for the forces without reaction, less what the fluid has given,
+/// and how much of what acted moved it.
+void settle(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, const Given& given,
             const std::vector<Vec3>& v_before, double dt) {
     const Grains& g = system.grains;
     parallel_for(g.size(), [&](std::size_t k) {
         const auto id = static_cast<std::size_t>(g.id[k]);
         if (f.at_grains.dry[id] != 0) return;
-        const Vec3 without = force_without_reaction(f, gathered_fluid(f, id), 2.0 * g.radius[k], system.domain.gravity);
         const bool alone =
             g.mobility[k] > 0.0 && system.groups[static_cast<std::size_t>(g.group[k])].motion == Motion::free;
         const Vec3 received = alone ? f.forcing.impulse[k] : Vec3(dt * f.last_fluid_force[id]);
-        c.owed[id] = received - dt * without - dt * drag[id].at(f.at_grains.u[id]);
+        c.owed[id] = received - dt * given.without[id] - dt * given.drag[id];
         if (!alone) return;
         const Vec3 acted = received + (dt * g.mass[k]) * system.domain.gravity;
         const Vec3 of_contacts = g.mass[k] * (g.v[k] - v_before[id]) - acted;
@@ -173,6 +193,78 @@ void settle(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, 
         const bool untouched = of_contacts.squaredNorm() <= 1e-16 * square || square == 0.0; // rounding
         c.freedom[id] = untouched ? 1.0 : std::clamp(1.0 + of_contacts.dot(acted) / square, 0.0, 1.0);
     });
+}
+
+// --- the grains' own disturbance ---
+
+/// Takes it out of what has been gathered; the fluid there is that of the end of a step, and changes no more.
+void take_out_own(const GridCoupling& c, GatheredFluid& at) {
+    if (!c.self) return;
+    take_out(*c.self, std::vector<double>(c.places.size(), 0.0), c.places.volume, at);
+    std::fill(at.a.begin(), at.a.end(), Vec3(Vec3::Zero()));
+}
+
+/// Where other grains are held, their drag over the density [1/s] screens a wake.
+std::vector<Push> screened_pushes(const GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system) {
+    const Grains& g = system.grains;
+    std::vector<Push> pushes(g.size());
+    if (!c.self || c.self->fraction == 0.0) return pushes;
+    parallel_for(g.size(), [&](std::size_t k) {
+        const auto id = static_cast<std::size_t>(g.id[k]);
+        if (g.mobility[k] != 0.0 || f.at_grains.dry[id] != 0) return;
+        pushes[id].screening = c.self->fraction / (c.places.volume[id] * c.self->density) *
+                               drag_resistance(f.drag, f.density, f.viscosity, 2.0 * g.radius[k], f.at_grains.eps[id],
+                                               (f.at_grains.u[id] - g.v[k]).norm());
+    });
+    return pushes;
+}
+
+/// What pushes the fluid where the grains are but for drag, by id [N]: a mean gradient drives less fluid there, and the
+/// stress in the grains' room, which the fluid's equation leaves to them, is missing from it; debts. `at` is as
+/// gathered, with the grains' own.
+std::vector<Vec3> pushes_besides_drag(const GridCoupling& c, const FluidOnGrains& f, double dt) {
+    const GatheredFluid& at = f.at_grains;
+    std::vector<Vec3> push(c.places.size(), Vec3::Zero());
+    parallel_for(push.size(), [&](std::size_t id) {
+        if (at.dry[id] == 0) push[id] = c.places.volume[id] * (f.mean_gradient - at.stress[id]) - c.owed[id] / dt;
+    });
+    return push;
+}
+
+/// Drag foreseen as a law of the gathered velocity, in which the grain's own is: with u' - past - R F for u', and the
+/// push F = besides - drag.
+void see_through_own(GridCoupling& c, const std::vector<Vec3>& besides, const std::vector<Push>& pushes,
+                     const WakeStep& wake, std::int64_t step, std::vector<LinearDrag>& drag) {
+    constexpr double most = 0.9;
+    const std::vector<double> response = fade_wakes(*c.self, pushes, wake);
+    for (std::size_t id = 0; id < drag.size(); ++id) {
+        LinearDrag& one = drag[id];
+        const double carried = one.rate * response[id];
+        if (!(carried <= most))
+            throw Diverged(step, wake.dt * static_cast<double>(step), "share of its slip that a grain's own push makes",
+                           static_cast<std::int64_t>(id), carried,
+                           "a shorter step or a wider coupling.kernel_width is needed");
+        const Vec3 past = own_fluid(*c.self, id, c.places.volume[id]).u;
+        one.known = (one.known + one.rate * (past + response[id] * besides[id])) / (1.0 - carried);
+        one.rate /= 1.0 - carried;
+    }
+}
+
+/// After the fluid's step: its pushes.
+void push_own(GridCoupling& c, const FluidOnGrains& f, std::vector<Push>& pushes, const Given& given,
+              const WakeStep& wake) {
+    const std::vector<Vec3> besides = pushes_besides_drag(c, f, wake.dt);
+    for (std::size_t id = 0; id < pushes.size(); ++id) pushes[id].force = besides[id] - given.drag[id];
+    push_wakes(*c.self, pushes, wake);
+}
+
+/// After the grains' steps: what carries them out of their wakes.
+void set_own_slips(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, std::vector<Push>& pushes) {
+    for (std::size_t k = 0; k < pushes.size(); ++k) {
+        const auto id = static_cast<std::size_t>(system.grains.id[k]);
+        if (f.at_grains.dry[id] == 0) pushes[id].slip = f.at_grains.u[id] - system.grains.v[k];
+    }
+    set_slips(*c.self, pushes);
 }
 
 } // namespace
@@ -193,15 +285,26 @@ void advance_grid_coupled(GridCoupling& c, GridFluid& fluid, FluidOnGrains& f, G
     c.bounded += found.bounded;
     c.eps = std::move(found.eps);
     if (c.two_way) change_porosity(fluid, c.eps);
-    gather(c, fluid, f.at_grains, needs_stress(f));
-    const std::vector<LinearDrag> drag = foresee(c, f, grains, dt);
+    const bool with_stress = needs_stress(f) || c.self;
+    gather(c, fluid, f.at_grains, with_stress);
+    const WakeStep wake{dt, two_steps_known(fluid)};
+    const std::vector<Vec3> besides = c.self ? pushes_besides_drag(c, f, dt) : std::vector<Vec3>{};
+    if (c.self) turn_wakes(*c.self, dt);
+    take_out_own(c, f.at_grains);
+    std::vector<LinearDrag> drag = foresee(c, f, grains, dt);
+    std::vector<Push> pushes = screened_pushes(c, f, grains);
+    if (c.self) see_through_own(c, besides, pushes, wake, step, drag);
     if (c.two_way) push_fluid(c, fluid, drag, dt);
     advance_grid(fluid, dt, step);
 
-    gather(c, fluid, f.at_grains, needs_stress(f));
+    gather(c, fluid, f.at_grains, with_stress);
+    const Given given = given_by_fluid(f, grains, drag);
+    if (c.self) push_own(c, f, pushes, given, wake);
+    take_out_own(c, f.at_grains);
     const std::vector<Vec3> v_before = velocities(grains.grains);
     advance_gathered(f, grains, dt, step, c.grain_steps);
-    if (c.two_way) settle(c, f, grains, drag, v_before, dt);
+    if (c.self) set_own_slips(c, f, grains, pushes);
+    if (c.two_way) settle(c, f, grains, given, v_before, dt);
 }
 
 } // namespace plumb

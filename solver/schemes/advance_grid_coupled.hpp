@@ -2,6 +2,7 @@
 #pragma once
 
 #include "coupling/grid_weights.hpp"
+#include "coupling/self_disturbance.hpp"
 #include "coupling/weights.hpp"
 #include "schemes/fluid_on_grains.hpp"
 
@@ -23,7 +24,8 @@ struct GridCoupling {
     // Share of what acts on a grain, contacts apart, that sets it in motion: 1 for a free grain, 0 for one that its
     // neighbours hold. Of the last step.
     std::vector<double> freedom;
-    std::int64_t bounded = 0; // cells of all steps that held more than they may
+    std::optional<SelfDisturbance> self; // taken out of what the grains gather
+    std::int64_t bounded = 0;            // cells of all steps that held more than they may
 };
 
 /// The porosity of the grains' present places, as if they had always been there.
@@ -35,6 +37,11 @@ void couple(GridCoupling& coupling, GridFluid& fluid, const GrainSystem& grains)
 /// with all forces but drag and contacts in g: linear in u', so that no step is too long for the slip's relaxation.
 /// What its neighbours hold does not follow: m is its mass over its freedom. The grains then take their own steps in
 /// the fluid found. What they receive otherwise than foreseen the fluid gives in its next step.
+///
+/// With `self` drag is that of the velocity without the grain's own wake, u' - past - R F: what the past has left and
+/// what the step's own push F will add, which is linear in the drag, so that the equations stay linear in u' and no
+/// step is too long for the slip. The step ends (Diverged) where a grain's own disturbance would carry it all, R b
+/// phi1 > 0.9.
 void advance_grid_coupled(GridCoupling& coupling, GridFluid& fluid, FluidOnGrains& at_grains, GrainSystem& grains,
                           double dt, std::int64_t step);
 

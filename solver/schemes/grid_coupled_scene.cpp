@@ -1,6 +1,6 @@
 #include "schemes/grid_coupled_scene.hpp"
 
-#include "coupling/self_disturbance.hpp"
+#include "coupling/grid_symbols.hpp"
 #include "coupling/suspension_viscosity.hpp"
 #include "grid/sums.hpp"
 #include "schemes/coupled_scene.hpp"
@@ -53,6 +53,43 @@ Vec3 balancing_gradient(const GridFluid& f, const GridCoupling& c, const FluidOn
     return weight / volume;
 }
 
+/// Width of the cells where they are equal cubes [m].
+std::optional<double> cube(const GridFluid& f) {
+    const double first = f.grid.axis[0].width(0);
+    for (std::size_t c = 0; c < f.dimensions(); ++c)
+        for (int k = 0; k < f.grid.axis[c].cells(); ++k)
+            if (std::abs(f.grid.axis[c].width(k) - first) > 1e-6 * first) return std::nullopt;
+    return first;
+}
+
+/// The correction, or `none`.
+void read_self_disturbance(Table& coupling, GridCoupling& c, const GridFluid& f, const GrainSystem& grains) {
+    constexpr double least_deviation = 0.75; // in cells: waves beyond what the grid knows are then .4 % of the kernel
+    const char* const key = "self_disturbance";
+    const auto law = make_family<SelfDisturbanceLaw>(coupling.law(key));
+    const auto* theory = std::get_if<OseenBrinkman>(&law);
+    if (theory == nullptr) return;
+    if (!c.two_way) coupling.fail(key, "grains that do not push the fluid have no wake to take out");
+    if (f.grid.dimensions != 3) coupling.fail(key, "the wake is that of three dimensions; the fluid has two");
+    const std::optional<double> cell = cube(f);
+    if (!cell) coupling.fail(key, "on a grid the wake is known for cells that are equal cubes");
+    if (!c.own_volume)
+        coupling.fail("own_volume", "\"excluded\" does what self_disturbance does with a grain's own volume");
+    if (std::holds_alternative<CellCounting>(c.weights.kernel))
+        coupling.fail(key, "what a grain gathers by \"cell_counting\" depends on its place in the cell");
+    const double deviation = deviation_in_widths(c.weights.kernel) * c.weights.width;
+    if (deviation < least_deviation * *cell)
+        coupling.fail("kernel_width",
+                      fmt::format("the kernel deviates by {:.4g} m; self_disturbance needs {} cells, {:.4g} m",
+                                  deviation, least_deviation, least_deviation * *cell));
+    const std::vector<double>& r = grains.grains.radius;
+    if (!std::holds_alternative<LoneGrain>(theory->structure) &&
+        std::any_of(r.begin(), r.end(), [&](double one) { return one != r.front(); }))
+        coupling.fail(key, "a structure factor is that of equal grains");
+    c.self = self_disturbance(*theory, {f.density, f.viscosity, *cell, c.weights.width, c.weights.kernel},
+                              largest_diameter(grains));
+}
+
 } // namespace
 
 GridCoupling read_grid_coupling(Table& coupling, const GridFluid& fluid, const GrainSystem& grains) {
@@ -65,8 +102,7 @@ GridCoupling read_grid_coupling(Table& coupling, const GridFluid& fluid, const G
     }
     c.own_volume = coupling.choice("own_volume", {"included", "excluded"}) == "included";
     c.least_porosity = coupling.number("least_porosity", {0.0, 1.0, false, false});
-    if (!std::holds_alternative<NoSelfDisturbance>(make_family<SelfDisturbanceLaw>(coupling.law("self_disturbance"))))
-        coupling.fail("self_disturbance", "only \"none\" is known on a grid");
+    read_self_disturbance(coupling, c, fluid, grains);
     if (!std::holds_alternative<PureFluidViscosity>(
             make_family<SuspensionViscosity>(coupling.law("suspension_viscosity"))))
         coupling.fail("suspension_viscosity", "only \"none\" is known on a grid");

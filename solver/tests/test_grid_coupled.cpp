@@ -41,13 +41,13 @@ arrange = {}
 [coupling]
 direction = {}
 kernel = {}
-kernel_width = {{times_diameter = 1.5}}
+kernel_width = {{times_diameter = {}}}
 drag = {}
 forces = {}
 exchange = {}
-own_volume = "included"
+own_volume = {}
 least_porosity = 0.2
-self_disturbance = "none"
+self_disturbance = {}
 suspension_viscosity = "none"
 {}
 [time]
@@ -73,6 +73,9 @@ std::string scene_text(const Changes& changes = {}) {
                    {"exchange", "\"exponential\""},
                    {"forces", "[\"buoyancy\", \"pressure_gradient\", \"virtual_mass\"]"},
                    {"kernel", "\"gaussian\""},
+                   {"width", "1.5"},
+                   {"own_volume", "\"included\""},
+                   {"self", "\"none\""},
                    {"mean", "mean_pressure_gradient = \"balances_weight\""},
                    {"integrator", "\"implicit_euler\""},
                    {"step", "1e-4"},
@@ -81,8 +84,9 @@ std::string scene_text(const Changes& changes = {}) {
     for (const auto& [key, value] : changes) values[key] = value;
     return fmt::format(fmt::runtime(scene_format), values["periodic"], values["gravity"], values["fluid"],
                        values["walls"], values["motion"], values["velocity"], values["contact"], values["arrange"],
-                       values["direction"], values["kernel"], values["drag"], values["forces"], values["exchange"],
-                       values["mean"], values["integrator"], values["step"]);
+                       values["direction"], values["kernel"], values["width"], values["drag"], values["forces"],
+                       values["exchange"], values["own_volume"], values["self"], values["mean"], values["integrator"],
+                       values["step"]);
 }
 
 Simulation simulation(const Changes& changes) {
@@ -203,6 +207,51 @@ TEST(GridCoupled, OneWayLeavesTheFluidAlone) {
     EXPECT_LT(s.grains.grains.v[0][2], -1e-3);
 }
 
+std::string corrected(const std::string& history = "unsteady") {
+    return "{law = \"oseen_brinkman\", history = \"" + history + "\", advection = \"slip\", structure = \"lone\"}";
+}
+
+// 21 tau_p; the goal for widths from two diameters on is 1 % of the speed that the drag law has. Steps that are longer
+// than tau_p see the same wake.
+TEST(GridCoupled, CorrectedGrainFallsAsTheLawSays) {
+    const auto speed = [](const std::string& self, const std::string& step, const std::string& integrator) {
+        Simulation s = simulation({{"arrange", single},
+                                   {"gravity", "[0.0, 0.0, -9.81]"},
+                                   {"forces", "[\"buoyancy\", \"pressure_gradient\"]"},
+                                   {"width", "2.0"},
+                                   {"fluid", "spacing = 2e-4\nadvection = \"central\"\npressure = \"dynamic\"\n"
+                                             "residual = 1e-6"},
+                                   {"self", self},
+                                   {"step", step},
+                                   {"integrator", integrator}});
+        advance(s, std::lround(0.03 / std::stod(step)));
+        return -s.grains.grains.v[0][2];
+    };
+    const double u_t = 6.922e-3; // Di Felice, this grain in this water
+    for (const char* step : {"1e-3", "1e-2"})
+        for (const char* integrator : {"\"bdf2\"", "\"implicit_euler\""})
+            EXPECT_NEAR(speed(corrected(), step, integrator) / u_t, 1.0, 1e-2) << step << " " << integrator;
+    EXPECT_GT(speed("\"none\"", "1e-3", "\"bdf2\"") / u_t, 1.02);
+}
+
+// The lattice has to stay one, as in the test without the correction: in steps of 0.5 s, 350 tau_p, it lasts for one.
+TEST(GridCoupled, CorrectionKeepsMomentum) {
+    for (const char* history : {"unsteady", "steady"})
+        for (const auto& [step, steps] : {std::pair{"1e-4", 4}, std::pair{"1e-2", 4}, std::pair{"0.5", 1}}) {
+            Simulation s = simulation({{"step", step},
+                                       {"self", corrected(history)},
+                                       {"width", "2.0"},
+                                       {"velocity", "[0.01, 0.0, 0.02]"},
+                                       {"forces", "[\"buoyancy\", \"pressure_gradient\"]"}});
+            const Vec3 before = momentum(s).sum;
+            for (int k = 0; k < steps; ++k) {
+                advance(s, 1);
+                const Momentum now = momentum(s);
+                EXPECT_LT((now.sum - before).norm(), 1e-7 * now.scale) << step << " " << history << " " << k;
+            }
+        }
+}
+
 TEST(GridCoupled, WhatCannotBeMeantIsRefused) {
     const auto refused = [](const Changes& changes, const std::string& part) {
         try {
@@ -218,6 +267,13 @@ TEST(GridCoupled, WhatCannotBeMeantIsRefused) {
              {"kernel", "\"wendland_c2\""}},
             "kernel_width");
     refused({{"fluid", "spacing = 2e-4\nadvection = \"central\"\npressure = \"full\"\nresidual = 1e-10"}}, "buoyancy");
+    refused({{"self", corrected()}, {"direction", "\"one_way\""}, {"mean", ""}}, "no wake");
+    refused({{"self", corrected()}, {"own_volume", "\"excluded\""}}, "own_volume");
+    refused({{"self", corrected()}, {"kernel", "\"wendland_c2\""}}, "kernel_width");
+    refused(
+        {{"self", corrected()},
+         {"fluid", "spacing = [1e-4, 2e-4, 1e-4]\nadvection = \"central\"\npressure = \"dynamic\"\nresidual = 1e-10"}},
+        "equal cubes");
 }
 
 } // namespace
