@@ -319,3 +319,22 @@ def test_rows_in_a_channel_tend_to_the_parabola_with_second_order():
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.02) and errors[1] / errors[2] == pytest.approx(4.0, rel=0.02)
     # a wall that continues the parabola exactly odd slips by (F/nu) <r^2>/8, <r^2> = 5 h^2/9: the same size, 8 x 0.0694 (h/L)^2
     assert 0.5 < errors[-1] / (8.0 * 5.0 / 72.0 * (2.5 / 40.0) ** 2) < 2.0
+
+
+# --- array of spheres ---
+
+
+@pytest.mark.parametrize(("c", "printed"), [(0.027, 2.008), (0.125, 4.292), (0.216, 7.442)])
+def test_drag_in_a_simple_cubic_array_is_that_of_zick_and_homsy(c, printed):
+    """1982, J. Fluid Mech. 115, 13, table 2: four digits."""
+    from theory import sphere_arrays
+
+    assert sphere_arrays.drag(c) == pytest.approx(printed, abs=1.1e-3)
+
+
+def test_drag_in_a_dilute_cubic_array_is_that_of_the_expansion():
+    from theory import sphere_arrays
+
+    assert sphere_arrays.drag(0.001) == pytest.approx(sphere_arrays.dilute(0.001), rel=1e-5)
+    with pytest.raises(ValueError, match="solid fraction"):
+        sphere_arrays.drag(0.5)

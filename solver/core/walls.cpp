@@ -54,10 +54,14 @@ Cylinder::Cylinder(Table& table)
       sideways(axis.unitOrthogonal()), radius(table.number("radius", positive)),
       sign(table.choice("side", {"inside", "outside"}) == "inside" ? -1.0 : 1.0) {}
 
+SphereWall::SphereWall(Table& table)
+    : centre(components(table, "centre")), radius(table.number("radius", positive)),
+      sign(table.choice("side", {"inside", "outside"}) == "inside" ? -1.0 : 1.0) {}
+
 namespace {
 
 void check_dimensions(const Table& table, int dimensions) {
-    for (const char* key : {"point", "normal", "lower", "upper", "velocity"})
+    for (const char* key : {"point", "centre", "normal", "lower", "upper", "velocity"})
         if (table.type(key) == toml::node_type::array && table.length(key) != static_cast<std::size_t>(dimensions))
             table.fail(key, fmt::format("{} numbers in a scene of {} dimensions", table.length(key), dimensions));
 }

@@ -76,6 +76,25 @@ struct Cylinder {
     }
 };
 
+/// The inside or the outside of a sphere (in two dimensions, of a circle).
+struct SphereWall {
+    static constexpr std::string_view name = "sphere";
+    static constexpr LawInfo info{"distance = radius - r (inside) or r - radius (outside), r = distance to the centre",
+                                  "inside: grains smaller than the sphere", "-"};
+    explicit SphereWall(Table& table);
+    Vec3 centre;   // [m]
+    double radius; // [m]
+    double sign;   // -1 for grains inside, +1 outside
+
+    template <class Visit> void touch(const Vec3& x, double reach, Visit&& visit) const {
+        const Vec3 from_centre = x - centre;
+        const double r = from_centre.norm(), distance = sign * (r - radius);
+        if (!(distance < reach)) return;
+        const Vec3 outward = r > 0.0 ? Vec3(from_centre / r) : Vec3(Vec3::UnitX()); // at the centre no other is defined
+        visit(WallPoint{sign * outward, distance, 0});
+    }
+};
+
 /// The outside of an axis-aligned box, whose edges and corners are sharp: one contact at a time.
 struct SolidBox {
     static constexpr std::string_view name = "solid_box";
@@ -99,7 +118,7 @@ struct SolidBox {
     }
 };
 
-using Wall = std::variant<Plane, Box, SolidBox, Cylinder, CylinderRows, TriangleMesh>;
+using Wall = std::variant<Plane, Box, SolidBox, Cylinder, SphereWall, CylinderRows, TriangleMesh>;
 
 /// One wall of the scene. It moves without turning: at time t it is displaced by velocity * t.
 struct WallBody {

@@ -80,6 +80,12 @@ struct Grid {
         block.n[c] = axis[c].faces();
         return block;
     }
+    /// Edges along axis e: between nodes that are neighbours on it, those at the end of a periodic axis too.
+    Block edges(std::size_t e) const {
+        Block block;
+        for (std::size_t c = 0; c < 3; ++c) block.n[c] = axis[c].cells() + (c == e ? 0 : 1);
+        return block;
+    }
     double cell_volume(const Place& p) const { return axis[0].width(p[0]) * axis[1].width(p[1]) * axis[2].width(p[2]); }
     /// Of the whole face, open or not [m2].
     double face_area(std::size_t c, const Place& p) const {

@@ -171,7 +171,7 @@ private:
     /// Upstream of `face` along another axis.
     Second second_across(const Place& face, std::size_t d, int way) const {
         const int beyond = axis(d).next(face[d], way);
-        if (beyond < 0 || !edge_open(face, d, way)) return {};
+        if (beyond < 0 || edge_share(face, d, way) == 0.0) return {};
         const double width = axis(d).width(face[d]);
         return {with(face, d, beyond), width / (width + axis(d).width(beyond))};
     }
@@ -246,10 +246,9 @@ private:
         return way == 0 ? -sum : sum;
     }
 
-    bool edge_open(const Place& p, std::size_t d, int way) const {
-        if (f.open.corner.empty()) return true;
-        const int own = p[c], other = p[d] + way;
-        return c == 0 ? f.open.corner_open(f.grid, own, other) : f.open.corner_open(f.grid, other, own);
+    /// Of the edge between a face and the next one across axis d.
+    double edge_share(const Place& p, std::size_t d, int way) const {
+        return f.open.edge_share(f.grid, 3 - c - d, with(p, d, p[d] + way));
     }
 
     /// Through the side towards the next face across the component's axis.
@@ -258,13 +257,17 @@ private:
         for (std::size_t e = 0; e < 3; ++e)
             if (e != c && e != d) area *= axis(e).width(p[e]);
         const int next = axis(d).next(p[d], way);
-        const double own = 0.5 * share(p) * axis(d).width(p[d]);
-        const double friction = f.viscosity * edge_eps(p, d, next) * area;
-        if (!edge_open(p, d, way)) {
-            row.diagonal += friction / own;
-        } else if (next >= 0) {
+        const std::size_t k = faces.at(p), at = static_cast<std::size_t>(way), back = 1 - at;
+        const double own = f.open.to_edge(c, k, d, at) * axis(d).width(p[d]);
+        const double open = edge_share(p, d, way), all = f.viscosity * edge_eps(p, d, next) * area;
+        const double closed = edge_share(p, d, 1 - way) - open; // a wall at rest lies between the two edges
+        if (closed > 0.0) row.diagonal += closed * all / (f.open.to_wall(c, k, d, at) * axis(d).width(p[d]));
+        if (open == 0.0) return;
+        const double friction = open * all;
+        if (next >= 0) {
             const Place other = with(p, d, next);
-            couple(row, other, friction / (own + 0.5 * share(other) * axis(d).width(next)));
+            const double beyond = f.open.to_edge(c, faces.at(other), d, back) * axis(d).width(next);
+            couple(row, other, friction / (own + beyond));
             const double outward = outward_flux(p, d, way);
             carry(row, outward, other, outward < 0.0 ? second_across(other, d, way) : second_across(p, d, 1 - way));
         } else {

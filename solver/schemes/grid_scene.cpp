@@ -129,14 +129,13 @@ void read_walls(Table& fluid, GridFluid& f, const std::vector<FluidWall>& walls,
                            fmt::format("\"grid\" has no walls that leave their place: \"{}\"", wall.body.name));
             continue;
         }
-        if (f.grid.dimensions == 3) fluid.fail("method", "\"grid\" has immersed walls in the plane only");
         if (wall.slips || wall.body.velocity.norm() > 0.0)
             fluid.fail("method",
                        fmt::format("\"grid\" has immersed walls that stick and rest only: \"{}\"", wall.body.name));
         immersed.push_back(wall.body);
     }
     f.open =
-        immersed.empty() ? open_grid(f.grid) : cut_plane(f.grid, [&](const Vec3& x) { return depth_in(immersed, x); });
+        immersed.empty() ? open_grid(f.grid) : cut_grid(f.grid, [&](const Vec3& x) { return depth_in(immersed, x); });
 }
 
 std::optional<SideNumber> side_of(Table& table, const GridFluid& f) {

@@ -102,7 +102,7 @@ TEST(Grid, CylinderArrayIsOfSecondOrder) {
     for (const int n : {24, 48, 96}) {
         GridFluid f = box(n, n, 1.0, 1.0, true, true);
         const double radius = std::sqrt(0.2 / std::numbers::pi);
-        f.open = cut_plane(f.grid, [&](const Vec3& x) { return std::hypot(x[0] - 0.513, x[1] - 0.4871) - radius; });
+        f.open = cut_grid(f.grid, [&](const Vec3& x) { return std::hypot(x[0] - 0.513, x[1] - 0.4871) - radius; });
         f.viscosity = 1.0;
         f.body_force = Vec3(1.0, 0.0, 0.0);
         make_ready(f);
