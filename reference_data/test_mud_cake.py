@@ -236,3 +236,24 @@ def test_a_bed_of_grains_resists_by_its_law():
     assert 3.0 < found / bed_drop("morsi_alexander", count, D, lower, height, Array(12), flow) < 17.0
     assert bed_drop("di_felice", 0, D, lower, 0.0, Array(12), flow) == 0.0
     assert math.isnan(bed_drop("di_felice", 10000, D, lower, height, Array(12), flow))
+
+
+# --- what the published heights need ---
+
+
+def test_travel_time_by_hand():
+    """On the axis the parabola has 1.5 times the mean; in the porous section the mean over the void fraction of the narrower width."""
+    free = mud_cake.travel_time(0.025, 0.01, clean_channel.TOP)
+    assert free == pytest.approx(0.05 / (1.5 * clean_channel.MEAN + 0.01))
+    slow = mud_cake.travel_time(0.025, 0.0, 0.2) - 0.05 / (1.5 * clean_channel.MEAN)
+    assert slow == pytest.approx(0.55 * 0.05 * 0.046 / (0.05 * clean_channel.MEAN), rel=1e-6)
+
+
+def test_published_heights_are_those_of_pores_half_filled():
+    """All twelve, whatever rate, diameter and array: between 0.43 and 0.57."""
+    from theory.settling import stokes_velocity
+
+    fluid = clean_channel.FLUID
+    for row in mud_cake.rows():
+        settling = stokes_velocity(2.0 * fluid["rho"], fluid["rho"], row.d, fluid["mu"])
+        assert 0.43 < mud_cake.needed_filling(row, Array(row.per_row).stops(row.d), settling) < 0.57

@@ -12,11 +12,12 @@ sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 from theory import clean_channel, mud_cake  # noqa: E402
 from theory.bed_resistance import bed_drop  # noqa: E402
 from theory.clean_channel import DEPTH, MEAN, Array  # noqa: E402
+from theory.settling import stokes_velocity  # noqa: E402
 
 UNITS = {
     "pressure": "1", "rise": "1", "rise_over_published": "1", "bed_height": "m", "bed_start": "m", "bed_porosity": "1", "resting_share": "1",
     "flow_change": "1", "volume_balance": "1", "trends_broken": "1", "series_trends_broken": "1", "pressure_change": "1", "height_change": "1",
-    "clean_pressure": "Pa", "injected_share": "1",
+    "clean_pressure": "Pa", "injected_share": "1", "pore_filling": "1",
 }
 TWELVE = "n12_d08_single"  # whose clean pressure is the reference pressure of all with the same cells
 ROWS = {row.name: row for row in mud_cake.rows()}
@@ -176,6 +177,25 @@ def one_points(injector):
     return len((HERE / injector["path"]).read_text(encoding="utf-8").splitlines()) - 1
 
 
+def least_height(published):
+    """Where a row's grains stop, m: no grain passes a throat narrower than itself."""
+    return Array(published.per_row).stops(published.d)
+
+
+def settling(run):
+    """Stokes' terminal velocity of a grain, m/s."""
+    fluid, d = run.scene["fluid"], float(injectors(run.scene)[0]["diameter"])
+    return stokes_velocity(run.scene["grains"]["density"], fluid["density"], d, fluid["viscosity"])
+
+
+def pore_filling(run):
+    """Share of the room between the cylinders that grains fill where the published bed of their row would be."""
+    published = row(run.scene)
+    lower, bed = least_height(published), Bed(run)
+    inside = np.count_nonzero((bed.x[:, 1] >= lower) & (bed.x[:, 1] < lower + published.bed_height))
+    return inside * math.pi * bed.d**3 / 6.0 / (array(run.scene).open_area(lower, lower + published.bed_height) * DEPTH)
+
+
 def injected_share(run):
     """Grains that have entered over those due."""
     scene, due = run.scene, 0
@@ -199,7 +219,7 @@ def measure(quantity, run):
         "pressure": final_pressure, "clean_pressure": clean_pressure, "flow_change": flow_change, "volume_balance": volume_balance,
         "rise": lambda r: final_pressure(r) - clean_pressure(r) / reference_pressure(r),
         "bed_height": lambda r: Bed(r).height, "bed_start": lambda r: Bed(r).start, "bed_porosity": lambda r: Bed(r).porosity,
-        "resting_share": lambda r: mud_cake.resting_share(Bed(r).x[:, 1], Bed(r).v), "injected_share": injected_share,
+        "resting_share": lambda r: mud_cake.resting_share(Bed(r).x[:, 1], Bed(r).v), "injected_share": injected_share, "pore_filling": pore_filling,
         "trends_broken": lambda r: broken(mud_cake.trends(all_rows(r, lambda one: (final_pressure(one), Bed(one).height)))),
         "series_trends_broken": lambda r: broken(mud_cake.series_trends(all_rows(r, pressures))),
         "pressure_change": lambda r: final_pressure(r) / final_pressure(r.other(unchanged(r))) - 1.0,
@@ -235,17 +255,25 @@ def table(runs):
         except Exception:  # the run whose clean pressure is wanted failed
             scaled = ""
         lines.append([run.variant, scaled, f"{published.pressure:.2f}" if published else "", *values,
-                      f"{1e3 * published.bed_height:.1f}" if published else "", f"{1e3 * bed.start:.1f}", f"{bed.porosity:.3f}",
+                      f"{1e3 * published.bed_height:.1f}" if published else "", filling(run), f"{1e3 * bed.start:.1f}", f"{bed.porosity:.3f}",
                       f"{len(bed.y)} of {mud_cake.arrived(bed.x[:, 1])} of {len(bed.x)}", f"{1e-3 * clean:.2f}", f"{1e-3 * (p - clean):.2f}",
                       f"{1e-3 * bed.expected_rise(law, flow(run.scene)):.2f}"])
     readings = [f"h_b, {name} (mm)" for name in mud_cake.READINGS]
-    columns = ["variant", "P", "Table 7", *readings, "Table 7 (mm)", "start (mm)", "porosity", "at rest, arrived, injected", "clean (kPa)",
+    columns = ["variant", "P", "Table 7", *readings, "Table 7 (mm)", "filling, needed", "start (mm)", "porosity", "at rest, arrived, injected", "clean (kPa)",
                "rise (kPa)", "rise by the law (kPa)"]
     return {"columns": columns, "rows": lines, "caption": CAPTION + fits(runs)}
 
 
+def filling(run):
+    """Of the pores where the published bed would be, and what that bed needs."""
+    published = row(run.scene)
+    if not published:
+        return ""
+    return f"{pore_filling(run):.2f}, {mud_cake.needed_filling(published, least_height(published), settling(run)):.2f}"
+
+
 CAPTION = ("Every run at its end. P: greatest pressure over that of the clean channel with 12 cylinders a row and the same cells; h_b: four readings of the heights of "
-           "the grains at rest, each plus one diameter, the first is judged; start: the 2nd percentile less a radius; porosity: of the room between the cylinders. Rise by the law: the "
+           "the grains at rest, each plus one diameter, the first is judged; filling: share of the room between the cylinders that grains fill where the published bed would be, and what that bed would need; start: the 2nd percentile less a radius; porosity: of the room between the cylinders. Rise by the law: the "
            "drag law's pressure gradient for as many grains over that height. ")
 
 

@@ -8,6 +8,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.integrate import trapezoid
 
 from tables import table
 from theory import clean_channel
@@ -144,6 +145,36 @@ def published_correlation():
     printed = table(f"{WHICH}/correlation.csv", si=False)
     coefficients = [float(printed[name][0]) for name in ("constant", "per_obstacle", "per_rate", "per_diameter")]
     return judged_fit(coefficients, rows(), [row.pressure for row in rows()])
+
+
+def travel_time(x, settling, lower):
+    """s, from the injection to the height `lower` [m] of a grain that the clean flow carries at x [m] across the channel.
+
+    Down the free channel with the parabola at x and its settling velocity; in the porous section with the mean flow of its void
+    fraction. What grains do to the flow and to each other is left out.
+    """
+    injection = clean_channel.paper("injection")
+    parabola = 1.5 * MEAN * (1.0 - (2.0 * x / clean_channel.CHANNEL - 1.0) ** 2)
+    free = (injection["height"] - max(lower, clean_channel.TOP)) / (parabola + settling)
+    y = np.linspace(min(lower, clean_channel.TOP), clean_channel.TOP, 501)
+    inside = MEAN * clean_channel.CHANNEL / (clean_channel.WIDTH * clean_channel.void_fraction(y)) + settling
+    return float(free + trapezoid(1.0 / inside, y))
+
+
+def carried(row, lower, settling, duration=0.8):
+    """How many grains of a row of Table 7 the clean flow carries to the height `lower` [m] in `duration` [s]."""
+    injection = clean_channel.paper("injection")
+    interval = injection["interval"] / row.rate
+    times = np.array([travel_time(x, settling, lower) for x in injection_points()[:, 0]])
+    return int(np.sum(np.maximum(np.ceil((duration - times) / interval), 0.0)))
+
+
+def needed_filling(row, start, settling):
+    """Share of the room between the cylinders that the grains of a row fill if all that the clean flow carries to the middle of
+    the published bed are in it: from `start` [m], over the published height."""
+    count = carried(row, start + 0.5 * row.bed_height, settling)
+    room = Array(row.per_row).open_area(start, start + row.bed_height) * DEPTH
+    return count * math.pi * row.d**3 / 6.0 / room
 
 
 ALIKE = 0.05  # of P: the paper calls 3.62 and 3.70 "similar", 2.2 % apart, and 2.59 and 2.74 different, 5.6 %
