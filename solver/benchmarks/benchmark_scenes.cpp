@@ -58,6 +58,13 @@ Simulation settled_bed() {
 
 Simulation driven_cavity() { return simulation("grid_cavity.toml", {}, Vec3::Zero()); }
 
+Simulation mud_cake() {
+    constexpr std::int64_t settling = 15; // steps of 1e-2 s, for the 25 mm that the highest of them fall
+    Simulation s = simulation("mud_cake_step.toml", {}, Vec3::Zero());
+    advance(s, settling);
+    return s;
+}
+
 Memory memory(const GrainSystem& system) {
     Memory sum;
     for_each_field(system.grains, [&](const char* /*name*/, const auto& field) { sum.grains += bytes(field); });

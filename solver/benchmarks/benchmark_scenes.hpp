@@ -17,6 +17,9 @@ Simulation settled_bed();
 /// The driven cavity on a grid of 1024^2 cells.
 Simulation driven_cavity();
 
+/// Grains that have settled on the mud cake's plug, more of which are injected. The first call takes some seconds.
+Simulation mud_cake();
+
 /// Memory that the state and the lists of a system hold [bytes], measured by the capacities of their containers.
 struct Memory {
     std::size_t grains = 0; // what grows with the grains

@@ -43,7 +43,9 @@ struct CylinderRows {
             const Row& row = rows[static_cast<std::size_t>(k)];
             const auto [begin, end] = range(x[0], far, row.first, pitch, row.count);
             for (int q = begin; q < end; ++q) {
-                const double dx = x[0] - (row.first + pitch * q), dy = x[1] - row.y, r = std::hypot(dx, dy);
+                const double dx = x[0] - (row.first + pitch * q), dy = x[1] - row.y, near = reach + row.radius;
+                if (dx * dx + dy * dy > near * near * (1.0 + 1e-12)) continue; // cheap; what is left is told exactly
+                const double r = std::hypot(dx, dy);
                 if (!(r - row.radius < reach)) continue;
                 const Vec3 outward = r > 0.0 ? Vec3(dx / r, dy / r, 0.0) : Vec3(Vec3::UnitX());
                 visit(WallPoint{outward, r - row.radius, row.element + q});

@@ -21,15 +21,16 @@ int cell_at(const Axis& axis, double x) {
 
 bool inside(const Axis& axis, double x) { return axis.periodic || (x >= axis.node.front() && x <= axis.node.back()); }
 
-/// A place along an axis and how far a point is from it.
+/// A place along an axis, how far a point is from it, and the kernel's factor for that where it is a product of such.
 struct Near {
     int index;
     double away_sq; // [m2]
+    double factor = 1.0;
 };
 
 /// The cells, or the faces, of an axis in reach of x.
-std::vector<Near> near_along(const Axis& axis, double x, double reach, bool of_faces) {
-    std::vector<Near> found;
+void near_along(const Axis& axis, double x, double reach, bool of_faces, std::vector<Near>& found) {
+    found.clear();
     const int n = axis.cells();
     const double length = axis.node.back() - axis.node.front();
     const int first = cell_at(axis, x - reach), last = cell_at(axis, x + reach) + (of_faces ? 1 : 0);
@@ -39,80 +40,124 @@ std::vector<Near> near_along(const Axis& axis, double x, double reach, bool of_f
         const double at = (of_faces ? axis.node[static_cast<std::size_t>(index)] : axis.centre(index)) + turns * length;
         if (std::abs(at - x) < reach) found.push_back({index, (at - x) * (at - x)});
     }
-    return found;
 }
 
-using Column = std::vector<std::pair<std::int32_t, double>>;
+/// Columns of P one after the other.
+struct Columns {
+    std::vector<std::size_t> size;
+    std::vector<std::int32_t> node;
+    std::vector<double> weight;
+
+    void add(std::size_t at, double value) {
+        node.push_back(static_cast<std::int32_t>(at));
+        weight.push_back(value);
+    }
+    /// The entries from `first` on are a column; its weights are divided by their sum.
+    void end(std::size_t first, double sum) {
+        if (!(sum > 0.0)) {
+            node.resize(first);
+            weight.resize(first);
+        }
+        for (std::size_t k = first; k < weight.size(); ++k) weight[k] /= sum;
+        size.push_back(weight.size() - first);
+    }
+};
+
+/// What columns are made for.
+struct Nodes {
+    const GridFluid& fluid;
+    Block block;
+    const Field<double>& volume;
+    int faces_across; // -1 for cells
+    double width;     // of the kernel [m]
+};
+
+/// exp(-q^2/2) is a product over the axes: it takes one exponential a place along an axis, not one a node.
+template <class Law> inline constexpr bool is_product = std::is_same_v<Law, GaussianKernel>;
 
 /// Volume times kernel for the nodes of a block near x, divided by their sum.
-template <class Law>
-Column column(const Law& law, const GridFluid& f, const Block& block, const Field<double>& volume, int faces_across,
-              double width, const Vec3& x) {
-    std::array<std::vector<Near>, 3> near{std::vector<Near>{{0, 0.0}}, {{0, 0.0}}, {{0, 0.0}}};
-    const double reach = law.support * width;
-    for (std::size_t d = 0; d < f.dimensions(); ++d)
-        near[d] =
-            near_along(f.grid.axis[d], x[static_cast<Eigen::Index>(d)], reach, static_cast<int>(d) == faces_across);
-    Column found;
+template <class Law> void add_column(const Law& law, const Nodes& n, const Vec3& x, Columns& found) {
+    static thread_local std::array<std::vector<Near>, 3> near; // keep their memory from grain to grain
+    const double reach = law.support * n.width, reach_sq = reach * reach;
+    for (std::size_t d = 0; d < 3; ++d) {
+        near[d].assign(1, {0, 0.0});
+        if (d >= n.fluid.dimensions()) continue;
+        const bool of_faces = static_cast<int>(d) == n.faces_across;
+        near_along(n.fluid.grid.axis[d], x[static_cast<Eigen::Index>(d)], reach, of_faces, near[d]);
+        if constexpr (is_product<Law>)
+            for (Near& place : near[d]) place.factor = law.w(std::sqrt(place.away_sq) / n.width);
+    }
+    const std::size_t first = found.weight.size();
     double sum = 0.0;
     for (const Near& z : near[2])
-        for (const Near& y : near[1])
+        for (const Near& y : near[1]) {
+            const std::size_t row = n.block.at({0, y.index, z.index});
             for (const Near& along : near[0]) {
-                const double q = std::sqrt(along.away_sq + y.away_sq + z.away_sq) / width;
-                const std::size_t node = block.at({along.index, y.index, z.index});
-                if (q >= law.support || volume[node] == 0.0) continue;
-                const double weight = volume[node] * law.w(q);
-                found.emplace_back(static_cast<std::int32_t>(node), weight);
-                sum += weight;
+                const double away_sq = along.away_sq + y.away_sq + z.away_sq;
+                const std::size_t node = row + static_cast<std::size_t>(along.index);
+                if (away_sq >= reach_sq || n.volume[node] == 0.0) continue;
+                const double w =
+                    is_product<Law> ? along.factor * (y.factor * z.factor) : law.w(std::sqrt(away_sq) / n.width);
+                found.add(node, n.volume[node] * w);
+                sum += found.weight.back();
             }
-    if (!(sum > 0.0)) return {};
-    for (auto& entry : found) entry.second /= sum;
-    return found;
+        }
+    found.end(first, sum);
 }
 
 /// The cell of the centre, or its two faces.
-Column column(const CellCounting& /*law*/, const GridFluid& f, const Block& block, const Field<double>& volume,
-              int faces_across, double /*width*/, const Vec3& x) {
+void add_column(const CellCounting& /*law*/, const Nodes& n, const Vec3& x, Columns& found) {
     Place p{0, 0, 0};
-    for (std::size_t d = 0; d < f.dimensions(); ++d) {
-        const Axis& axis = f.grid.axis[d];
-        if (!inside(axis, x[static_cast<Eigen::Index>(d)])) return {};
+    bool outside = false;
+    for (std::size_t d = 0; d < n.fluid.dimensions(); ++d) {
+        const Axis& axis = n.fluid.grid.axis[d];
+        outside = outside || !inside(axis, x[static_cast<Eigen::Index>(d)]);
         p[d] = ((cell_at(axis, x[static_cast<Eigen::Index>(d)]) % axis.cells()) + axis.cells()) % axis.cells();
     }
-    Column found;
+    const std::size_t first = found.weight.size();
     const auto add = [&](const Place& at) {
-        if (volume[block.at(at)] > 0.0) found.emplace_back(static_cast<std::int32_t>(block.at(at)), 1.0);
+        if (!outside && n.volume[n.block.at(at)] > 0.0) found.add(n.block.at(at), 1.0);
     };
     add(p);
-    if (faces_across >= 0) {
-        const auto c = static_cast<std::size_t>(faces_across);
-        p[c] = f.grid.axis[c].face_above(p[c]);
+    if (n.faces_across >= 0) {
+        const auto c = static_cast<std::size_t>(n.faces_across);
+        p[c] = n.fluid.grid.axis[c].face_above(p[c]);
         add(p);
     }
-    for (auto& entry : found) entry.second /= static_cast<double>(found.size());
-    return found;
+    found.end(first, static_cast<double>(found.weight.size() - first));
+}
+
+SparseColumns joined(const std::vector<Columns>& parts) {
+    SparseColumns all;
+    std::vector<std::ptrdiff_t> first(parts.size()); // entry of each part
+    for (std::size_t q = 0; q < parts.size(); ++q) {
+        first[q] = static_cast<std::ptrdiff_t>(all.begin.back());
+        for (const std::size_t size : parts[q].size) all.begin.push_back(all.begin.back() + size);
+    }
+    all.node.resize(all.begin.back());
+    all.weight.resize(all.begin.back());
+    const auto copy = [&](std::size_t q) {
+        std::copy(parts[q].node.begin(), parts[q].node.end(), all.node.begin() + first[q]);
+        std::copy(parts[q].weight.begin(), parts[q].weight.end(), all.weight.begin() + first[q]);
+    };
+    parallel_for(parts.size(), copy);
+    return all;
 }
 
 /// Columns of all grains for cells (faces_across < 0) or the faces across an axis.
 SparseColumns columns(const GridWeights& w, const GridFluid& f, const std::vector<Vec3>& x, int faces_across) {
+    constexpr std::size_t share = 64; // grains that a thread takes at once
     const bool of_cells = faces_across < 0;
     const auto c = static_cast<std::size_t>(std::max(faces_across, 0));
-    const Block block = of_cells ? f.grid.cells() : f.grid.faces(c);
-    const Field<double>& volume = of_cells ? w.cell_volume : w.face_volume[c];
-    std::vector<Column> column_of(x.size());
-    parallel_for(x.size(), [&](std::size_t j) {
-        column_of[j] = std::visit(
-            [&](const auto& law) { return column(law, f, block, volume, faces_across, w.width, x[j]); }, w.kernel);
-    });
-    SparseColumns all;
-    for (const Column& one : column_of) {
-        for (const auto& [node, weight] : one) {
-            all.node.push_back(node);
-            all.weight.push_back(weight);
-        }
-        all.begin.push_back(all.node.size());
-    }
-    return all;
+    const Nodes nodes{f, of_cells ? f.grid.cells() : f.grid.faces(c), of_cells ? w.cell_volume : w.face_volume[c],
+                      faces_across, w.width};
+    std::vector<Columns> parts((x.size() + share - 1) / share);
+    const auto run = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t j = begin; j < end; ++j)
+            std::visit([&](const auto& law) { add_column(law, nodes, x[j], parts[begin / share]); }, w.kernel);
+    };
+    parallel_chunks(x.size(), run, share);
+    return joined(parts);
 }
 
 /// The open cells beside a cell.

@@ -15,8 +15,9 @@ namespace plumb {
 namespace {
 
 // Skin of the neighbour list in radii of the smallest grain: a wider one is rebuilt less often but holds more pairs
-// that do not touch (measured in solver/benchmarks).
-constexpr double skin_in_radii = 0.1;
+// that do not touch (measured in solver/benchmarks). Grains that are injected fly, at a speed that takes them out of a
+// narrow skin in a few steps, and have few neighbours for most of their way.
+constexpr double skin_in_radii = 0.1, skin_of_injected = 0.5;
 constexpr double far_away = 1e30; // [m] position of the record that pads the list; it touches nothing
 
 /// Inverse mass as a contact feels it: a block moves as a whole, a fixed grain not at all.
@@ -294,7 +295,8 @@ void prepare_lists(GrainSystem& system) {
     list.rolls = !std::holds_alternative<PairLaws<NoRolling>>(system.contact.rolling);
     double smallest = std::numeric_limits<double>::infinity();
     for (const double r : system.grains.radius) smallest = std::min(smallest, r);
-    list.skin = std::isfinite(smallest) ? skin_in_radii * smallest : 0.0;
+    const double skin = system.injectors.empty() ? skin_in_radii : skin_of_injected;
+    list.skin = std::isfinite(smallest) ? skin * smallest : 0.0;
 }
 
 /// Lists of a system without contacts: only the places in the records are needed.

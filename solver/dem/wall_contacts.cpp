@@ -59,19 +59,23 @@ void apply_laws(WallContact& contact, const WallPoint& point, const Law& law, co
 
 /// Replaces the contacts of one grain by those of now, each taking over the memory of its forerunner.
 template <class Law, class RollingLawType>
-void update_grain(std::vector<WallContact>& contacts, const std::vector<WallBody>& walls, const PairLaws<Law>& laws,
-                  const PairLaws<RollingLawType>& rolling, const Grains& grains, const Neighbours& list,
-                  std::size_t place, double time, double dt) {
-    const std::vector<WallContact> before = contacts; // a handful at most
-    contacts.clear();
+void update_grain(WallContacts& near_walls, std::size_t q, const std::vector<WallBody>& walls,
+                  const PairLaws<Law>& laws, const PairLaws<RollingLawType>& rolling, const Grains& grains,
+                  const Neighbours& list, double time, double dt) {
+    const auto place = static_cast<std::size_t>(near_walls.near[q]);
+    std::vector<WallContact>& contacts = near_walls.contacts[q];
+    static thread_local std::vector<WallContact> before; // a handful at most; keeps its memory from call to call
+    before.clear();
+    before.swap(contacts);
     const GrainRecord& grain = list.records[place];
     if (grain.inverse_mass == 0.0) return; // a fixed grain and a wall: two bodies of infinite mass
     const Vec3 x(grain.x, grain.y, grain.z);
     const auto material = static_cast<std::int32_t>(list.spins[place].material);
-    for (std::size_t w = 0; w < walls.size(); ++w) {
-        const WallBody& wall = walls[w];
+    for (std::size_t e = near_walls.walls_begin[q]; e < near_walls.walls_begin[q + 1]; ++e) {
+        const std::int32_t number = near_walls.walls[e];
+        const WallBody& wall = walls[static_cast<std::size_t>(number)];
         wall.touch(x, grain.radius, time, [&](const WallPoint& point) {
-            WallContact now{grains.id[place], static_cast<std::int32_t>(w), point.element};
+            WallContact now{grains.id[place], number, point.element};
             for (const WallContact& old : before)
                 if (old.wall == now.wall && old.element == now.element) now.stretch = old.stretch;
             apply_laws(now, point, laws.of(material, wall.material), rolling.of(material, wall.material), grain,
@@ -96,13 +100,18 @@ void rebuild(WallContacts& near_walls, const std::vector<WallBody>& walls, const
     near_walls.near.clear();
     near_walls.contacts.clear();
     near_walls.slot.clear();
+    near_walls.walls_begin.assign(1, 0);
+    near_walls.walls.clear();
     if (walls.empty()) return;
     near_walls.slot.assign(grains.size(), -1);
     for (std::size_t k = 0; k < grains.size(); ++k) {
-        bool close = false;
-        for (const WallBody& wall : walls)
-            wall.touch(grains.x[k], grains.radius[k] + skin, time, [&](const WallPoint&) { close = true; });
-        if (!close) continue;
+        for (std::size_t w = 0; w < walls.size(); ++w) {
+            bool close = false;
+            walls[w].touch(grains.x[k], grains.radius[k] + skin, time, [&](const WallPoint&) { close = true; });
+            if (close) near_walls.walls.push_back(static_cast<std::int32_t>(w));
+        }
+        if (near_walls.walls.size() == near_walls.walls_begin.back()) continue;
+        near_walls.walls_begin.push_back(near_walls.walls.size());
         near_walls.slot[k] = static_cast<std::int32_t>(near_walls.near.size());
         near_walls.near.push_back(static_cast<std::int32_t>(k));
     }
@@ -125,8 +134,7 @@ void evaluate_wall_contacts(WallContacts& near_walls, const std::vector<WallBody
                     near_walls.near.size(),
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t q = begin; q < end; ++q)
-                            update_grain(near_walls.contacts[q], walls, laws, rolling, grains, list,
-                                         static_cast<std::size_t>(near_walls.near[q]), time, dt);
+                            update_grain(near_walls, q, walls, laws, rolling, grains, list, time, dt);
                     },
                     64);
         },

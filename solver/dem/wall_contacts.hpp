@@ -29,6 +29,8 @@ struct WallContacts {
     std::vector<std::int32_t> near;                 // places, ascending
     std::vector<std::int32_t> slot;                 // by place: q of near[q], or -1; empty without walls
     std::vector<std::vector<WallContact>> contacts; // of near[q]
+    std::vector<std::size_t> walls_begin;           // of near[q] in `walls`, and the end
+    std::vector<std::int32_t> walls;                // those that near[q] may touch, ascending
 };
 
 /// All contacts with a memory or a force, in order of grain id: for checkpoints and probes.

@@ -16,21 +16,22 @@ namespace {
 
 /// Entries of a row of a matrix, in the order of their columns.
 struct Entries {
-    std::array<std::pair<int, double>, 26> entry{};
+    struct Entry {
+        int column;
+        double value;
+    };
+    std::array<Entry, 26> entry; // those from `size` on are not set
     std::size_t size = 0;
 
     void put(int column, double value) {
         std::size_t at = size;
-        while (at > 0 && entry[at - 1].first >= column) --at;
-        if (at < size && entry[at].first == column) {
-            entry[at].second += value;
+        while (at > 0 && entry[at - 1].column >= column) --at;
+        if (at < size && entry[at].column == column) {
+            entry[at].value += value;
             return;
         }
-        std::copy_backward(entry.begin() + static_cast<std::ptrdiff_t>(at),
-                           entry.begin() + static_cast<std::ptrdiff_t>(size),
-                           entry.begin() + static_cast<std::ptrdiff_t>(size + 1));
+        for (std::size_t e = size++; e > at; --e) entry[e] = entry[e - 1];
         entry[at] = {column, value};
-        ++size;
     }
 };
 
@@ -40,6 +41,8 @@ struct Row {
     Entries near, far; // `far`: second upstream, and what it changes
     double diagonal = 0.0, far_diagonal = 0.0, known = 0.0;
 
+    void hold(double coefficient) { diagonal += coefficient; }
+    void push(double force) { known += force; }
     /// Adds `coefficient` (neighbour - own) to the force on the control volume; the neighbour is an unknown or, with
     /// column < 0, has the value given.
     void couple(int column, double coefficient, double value) {
@@ -58,20 +61,45 @@ struct Row {
     }
 };
 
-/// Rows as a matrix.
-RowMatrix matrix_of(const std::vector<Row>& rows) {
-    const auto n = static_cast<Eigen::Index>(rows.size());
+/// The force that a row stands for with the velocities given, without the row.
+struct RowForce {
+    double own; // velocity
+    double force = 0.0;
+
+    void hold(double coefficient) { force -= coefficient * own; }
+    void push(double more) { force += more; }
+    void couple(int /*column*/, double coefficient, double value) { force += coefficient * (value - own); }
+    void couple_far(int column, double coefficient, double value) { couple(column, coefficient, value); }
+};
+
+/// A matrix, a share of its rows after the other.
+struct MatrixRows {
+    std::vector<int> count, column;
+    std::vector<double> value;
+
+    void add(const Entries& entries) {
+        count.push_back(static_cast<int>(entries.size));
+        for (std::size_t e = 0; e < entries.size; ++e) {
+            column.push_back(entries.entry[e].column);
+            value.push_back(entries.entry[e].value);
+        }
+    }
+};
+
+RowMatrix matrix_of(const std::vector<MatrixRows>& parts, Eigen::Index n) {
     RowMatrix matrix(n, n);
     int* begin = matrix.outerIndexPtr();
+    std::vector<std::size_t> first; // row of each part
+    Eigen::Index row = 0;
     begin[0] = 0;
-    for (std::size_t k = 0; k < rows.size(); ++k) begin[k + 1] = begin[k] + static_cast<int>(rows[k].near.size);
+    for (const MatrixRows& part : parts) {
+        first.push_back(static_cast<std::size_t>(row));
+        for (const int count : part.count) begin[row + 1] = begin[row] + count, ++row;
+    }
     matrix.resizeNonZeros(begin[n]);
-    parallel_for(rows.size(), [&](std::size_t k) {
-        const Entries& entries = rows[k].near;
-        for (std::size_t e = 0; e < entries.size; ++e) {
-            matrix.innerIndexPtr()[begin[k] + static_cast<int>(e)] = entries.entry[e].first;
-            matrix.valuePtr()[begin[k] + static_cast<int>(e)] = entries.entry[e].second;
-        }
+    parallel_for(parts.size(), [&](std::size_t q) {
+        std::copy(parts[q].column.begin(), parts[q].column.end(), matrix.innerIndexPtr() + begin[first[q]]);
+        std::copy(parts[q].value.begin(), parts[q].value.end(), matrix.valuePtr() + begin[first[q]]);
     });
     return matrix;
 }
@@ -92,15 +120,14 @@ public:
         }
     }
 
-    Row row(const Place& p) const {
-        Row made;
+    /// Adds all that acts on the control volume of a face to a row or its force.
+    template <class Made> void make(const Place& p, Made& made) const {
         if (!friction_only) resist(p, made);
         for (const int way : {0, 1}) {
             along(p, way, made);
             for (std::size_t d = 0; d < f.dimensions(); ++d)
                 if (d != c) across(p, d, way, made);
         }
-        return made;
     }
 
     /// rho eps V of the control volume of a face [kg].
@@ -134,7 +161,7 @@ private:
         return friction_only ? 0.0 : flux[d][f.grid.faces(d).at(face)];
     }
 
-    void couple(Row& row, const Place& face, double coefficient) const {
+    template <class Made> void couple(Made& row, const Place& face, double coefficient) const {
         const std::size_t k = faces.at(face);
         row.couple(f.unknown[c][k], coefficient, f.u[c][k]);
     }
@@ -145,7 +172,7 @@ private:
         double reach = 0.0; // 0: there is none
     };
 
-    void carry(Row& row, double outward, const Place& other, const Second& second) const {
+    template <class Made> void carry(Made& row, double outward, const Place& other, const Second& second) const {
         if (friction_only) return;
         const auto weight = [&](double reach) {
             return std::visit([&](const auto& law) { return law(outward, reach); }, f.advection);
@@ -178,7 +205,7 @@ private:
 
     /// What the porous medium around a face takes: beta(|u|) u, linear around the carrier's speed as Newton's method
     /// has it, which is of second order in time like the carrier and does not overshoot in long steps.
-    void resist(const Place& p, Row& row) const {
+    template <class Made> void resist(const Place& p, Made& row) const {
         if (std::holds_alternative<NoResistance>(f.resistance)) return;
         const double speed = face_speed(p);
         for (const int cell : {axis(c).cell_below(p[c]), axis(c).cell_above(p[c])}) {
@@ -187,8 +214,8 @@ private:
             const double volume = 0.5 * f.open.cell[k] * f.grid.cell_volume(with(p, c, cell));
             const Resisted r =
                 std::visit([&](const auto& law) { return law(f.eps[k], speed, f.density, f.viscosity); }, f.resistance);
-            row.diagonal += (r.beta + r.rise) * volume;
-            row.known += r.rise * volume * flux_of[c][faces.at(p)];
+            row.hold((r.beta + r.rise) * volume);
+            row.push(r.rise * volume * flux_of[c][faces.at(p)]);
         }
     }
 
@@ -210,7 +237,7 @@ private:
     }
 
     /// Through the middle of the cell on one side along the component's own axis.
-    void along(const Place& p, int way, Row& row) const {
+    template <class Made> void along(const Place& p, int way, Made& row) const {
         const int cell = way == 0 ? axis(c).cell_below(p[c]) : axis(c).cell_above(p[c]);
         if (cell < 0) return; // an outflow
         const Place middle = with(p, c, cell);
@@ -220,7 +247,7 @@ private:
         if (volume > 0.0) {
             const double friction = f.viscosity * f.eps[cells.at(middle)] * own / volume;
             couple(row, other, friction * next);
-            row.diagonal += friction * (own - next); // the rest of the polygon's sides is a wall at rest
+            row.hold(friction * (own - next)); // the rest of the polygon's sides is a wall at rest
         }
         const double outward = (way == 0 ? -0.5 : 0.5) * (mass_flux(c, p) + mass_flux(c, other));
         const double across = axis(c).width(cell);
@@ -252,7 +279,7 @@ private:
     }
 
     /// Through the side towards the next face across the component's axis.
-    void across(const Place& p, std::size_t d, int way, Row& row) const {
+    template <class Made> void across(const Place& p, std::size_t d, int way, Made& row) const {
         double area = axis(c).dual_width(p[c]);
         for (std::size_t e = 0; e < 3; ++e)
             if (e != c && e != d) area *= axis(e).width(p[e]);
@@ -261,7 +288,7 @@ private:
         const double own = f.open.to_edge(c, k, d, at) * axis(d).width(p[d]);
         const double open = edge_share(p, d, way), all = f.viscosity * edge_eps(p, d, next) * area;
         const double closed = edge_share(p, d, 1 - way) - open; // a wall at rest lies between the two edges
-        if (closed > 0.0) row.diagonal += closed * all / (f.open.to_wall(c, k, d, at) * axis(d).width(p[d]));
+        if (closed > 0.0) row.hold(closed * all / (f.open.to_wall(c, k, d, at) * axis(d).width(p[d])));
         if (open == 0.0) return;
         const double friction = open * all;
         if (next >= 0) {
@@ -275,7 +302,7 @@ private:
         }
     }
 
-    void at_side(const Place& p, std::size_t d, int way, double friction, Row& row) const {
+    template <class Made> void at_side(const Place& p, std::size_t d, int way, double friction, Made& row) const {
         const GridSide& side = f.sides[d][static_cast<std::size_t>(way)];
         if (side.kind == GridSide::Kind::no_slip) row.couple(-1, friction, side.velocity[static_cast<Eigen::Index>(c)]);
         if (side.kind == GridSide::Kind::inflow) { // comes in without a velocity along the side
@@ -294,20 +321,6 @@ double outflow_force(const GridFluid& f, std::size_t c, const Place& p) {
     return 0.0;
 }
 
-/// The matrix of the rows, and that of their near entries alone where they have others.
-void fill(MomentumRows& made, std::vector<Row>& rows) {
-    parallel_for(rows.size(), [&](std::size_t k) { rows[k].near.put(static_cast<int>(k), rows[k].diagonal); });
-    if (std::any_of(rows.begin(), rows.end(), [](const Row& row) { return row.far.size > 0; })) {
-        made.compact = matrix_of(rows);
-        parallel_for(rows.size(), [&](std::size_t k) {
-            for (std::size_t e = 0; e < rows[k].far.size; ++e)
-                rows[k].near.put(rows[k].far.entry[e].first, rows[k].far.entry[e].second);
-            rows[k].near.put(static_cast<int>(k), rows[k].far_diagonal);
-        });
-    }
-    made.matrix = matrix_of(rows);
-}
-
 } // namespace
 
 MomentumRows momentum_rows(const GridFluid& f, std::size_t c, const Velocity& carrier, double per_time) {
@@ -317,40 +330,49 @@ MomentumRows momentum_rows(const GridFluid& f, std::size_t c, const Velocity& ca
     for (std::size_t k = 0; k < faces.size(); ++k)
         if (f.unknown[c][k] >= 0) face_of[static_cast<std::size_t>(f.unknown[c][k])] = k;
     const RowMaker maker(f, c, carrier);
-    std::vector<Row> rows(n);
     MomentumRows made;
     made.known.resize(f.unknowns[c]);
     made.mass.resize(f.unknowns[c]);
     made.room.resize(f.unknowns[c]);
-    parallel_for(n, [&](std::size_t k) {
-        const Place p = faces.place(face_of[k]);
-        const auto at = static_cast<Eigen::Index>(k);
-        Row& row = rows[k];
-        row = maker.row(p);
-        made.mass[at] = maker.mass(p);
-        made.room[at] = open_area(f, c, p) * f.grid.axis[c].dual_width(p[c]);
-        made.known[at] = row.known + outflow_force(f, c, p);
-        row.diagonal += per_time * made.mass[at] + (f.drag[c].empty() ? 0.0 : f.drag[c][face_of[k]]);
+    const std::size_t parts = (n + parallel_chunk - 1) / parallel_chunk;
+    std::vector<MatrixRows> near(parts), all(parts);
+    std::vector<char> any_far(parts, 0);
+    parallel_chunks(n, [&](std::size_t begin, std::size_t end) {
+        const std::size_t part = begin / parallel_chunk;
+        for (std::size_t k = begin; k < end; ++k) {
+            const Place p = faces.place(face_of[k]);
+            const auto at = static_cast<Eigen::Index>(k);
+            Row row;
+            maker.make(p, row);
+            made.mass[at] = maker.mass(p);
+            made.room[at] = open_area(f, c, p) * f.grid.axis[c].dual_width(p[c]);
+            made.known[at] = row.known + outflow_force(f, c, p);
+            const double drag = f.drag[c].empty() ? 0.0 : f.drag[c][face_of[k]];
+            row.near.put(static_cast<int>(k), row.diagonal + (per_time * made.mass[at] + drag));
+            near[part].add(row.near);
+            if (row.far.size > 0) any_far[part] = 1;
+            for (std::size_t e = 0; e < row.far.size; ++e)
+                row.near.put(row.far.entry[e].column, row.far.entry[e].value);
+            row.near.put(static_cast<int>(k), row.far_diagonal);
+            all[part].add(row.near);
+        }
     });
-    fill(made, rows);
+    const bool far = std::any_of(any_far.begin(), any_far.end(), [](char any) { return any != 0; });
+    if (far) made.compact = matrix_of(near, f.unknowns[c]);
+    made.matrix = matrix_of(all, f.unknowns[c]);
     return made;
 }
 
 Field<double> friction_on_faces(const GridFluid& f, std::size_t c) {
     const Block faces = f.grid.faces(c);
-    std::vector<double> u(static_cast<std::size_t>(f.unknowns[c]));
-    for (std::size_t k = 0; k < faces.size(); ++k)
-        if (f.unknown[c][k] >= 0) u[static_cast<std::size_t>(f.unknown[c][k])] = f.u[c][k];
     const RowMaker maker(f, c, f.u, false);
     Field<double> force(faces.size(), 0.0);
     parallel_for(faces.size(), [&](std::size_t k) {
         if (f.unknown[c][k] < 0) return;
         const Place p = faces.place(k);
-        const Row row = maker.row(p);
-        double sum = row.known - row.diagonal * f.u[c][k];
-        for (std::size_t e = 0; e < row.near.size; ++e)
-            sum -= row.near.entry[e].second * u[static_cast<std::size_t>(row.near.entry[e].first)];
-        force[k] = sum / face_eps(f, c, p);
+        RowForce sum{f.u[c][k]};
+        maker.make(p, sum);
+        force[k] = sum.force / face_eps(f, c, p);
     });
     return force;
 }
