@@ -251,9 +251,11 @@ def test_travel_time_by_hand():
 
 def test_published_heights_are_those_of_pores_half_filled():
     """All twelve, whatever rate, diameter and array: between 0.43 and 0.57."""
-    from theory.settling import stokes_velocity
-
-    fluid = clean_channel.FLUID
     for row in mud_cake.rows():
-        settling = stokes_velocity(2.0 * fluid["rho"], fluid["rho"], row.d, fluid["mu"])
-        assert 0.43 < mud_cake.needed_filling(row, Array(row.per_row).stops(row.d), settling) < 0.57
+        assert 0.43 < mud_cake.needed_filling(row) < 0.57
+
+
+def test_pore_filling_counts_the_centres_between_the_ends():
+    row = mud_cake.row_of(1.0, 16, 8e-4)
+    y = mud_cake.lowest(row) + np.array([-1e-6, 1e-6, 0.01, row.bed_height - 1e-6, row.bed_height + 1e-6])
+    assert mud_cake.pore_filling(y, row) == pytest.approx(mud_cake.filling(3, row))

@@ -12,7 +12,6 @@ sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 from theory import clean_channel, mud_cake  # noqa: E402
 from theory.bed_resistance import bed_drop  # noqa: E402
 from theory.clean_channel import DEPTH, MEAN, Array  # noqa: E402
-from theory.settling import stokes_velocity  # noqa: E402
 
 UNITS = {
     "pressure": "1", "rise": "1", "rise_over_published": "1", "bed_height": "m", "bed_start": "m", "bed_porosity": "1", "resting_share": "1",
@@ -177,25 +176,6 @@ def one_points(injector):
     return len((HERE / injector["path"]).read_text(encoding="utf-8").splitlines()) - 1
 
 
-def least_height(published):
-    """Where a row's grains stop, m: no grain passes a throat narrower than itself."""
-    return Array(published.per_row).stops(published.d)
-
-
-def settling(run):
-    """Stokes' terminal velocity of a grain, m/s."""
-    fluid, d = run.scene["fluid"], float(injectors(run.scene)[0]["diameter"])
-    return stokes_velocity(run.scene["grains"]["density"], fluid["density"], d, fluid["viscosity"])
-
-
-def pore_filling(run):
-    """Share of the room between the cylinders that grains fill where the published bed of their row would be."""
-    published = row(run.scene)
-    lower, bed = least_height(published), Bed(run)
-    inside = np.count_nonzero((bed.x[:, 1] >= lower) & (bed.x[:, 1] < lower + published.bed_height))
-    return inside * math.pi * bed.d**3 / 6.0 / (array(run.scene).open_area(lower, lower + published.bed_height) * DEPTH)
-
-
 def injected_share(run):
     """Grains that have entered over those due."""
     scene, due = run.scene, 0
@@ -219,7 +199,7 @@ def measure(quantity, run):
         "pressure": final_pressure, "clean_pressure": clean_pressure, "flow_change": flow_change, "volume_balance": volume_balance,
         "rise": lambda r: final_pressure(r) - clean_pressure(r) / reference_pressure(r),
         "bed_height": lambda r: Bed(r).height, "bed_start": lambda r: Bed(r).start, "bed_porosity": lambda r: Bed(r).porosity,
-        "resting_share": lambda r: mud_cake.resting_share(Bed(r).x[:, 1], Bed(r).v), "injected_share": injected_share, "pore_filling": pore_filling,
+        "resting_share": lambda r: mud_cake.resting_share(Bed(r).x[:, 1], Bed(r).v), "injected_share": injected_share, "pore_filling": lambda r: mud_cake.pore_filling(Bed(r).x[:, 1], row(r.scene)),
         "trends_broken": lambda r: broken(mud_cake.trends(all_rows(r, lambda one: (final_pressure(one), Bed(one).height)))),
         "series_trends_broken": lambda r: broken(mud_cake.series_trends(all_rows(r, pressures))),
         "pressure_change": lambda r: final_pressure(r) / final_pressure(r.other(unchanged(r))) - 1.0,
@@ -266,10 +246,8 @@ def table(runs):
 
 def filling(run):
     """Of the pores where the published bed would be, and what that bed needs."""
-    published = row(run.scene)
-    if not published:
-        return ""
-    return f"{pore_filling(run):.2f}, {mud_cake.needed_filling(published, least_height(published), settling(run)):.2f}"
+    one = row(run.scene)
+    return f"{mud_cake.pore_filling(Bed(run).x[:, 1], one):.2f}, {mud_cake.needed_filling(one):.2f}" if one else ""
 
 
 CAPTION = ("Every run at its end. P: greatest pressure over that of the clean channel with 12 cylinders a row and the same cells; h_b: four readings of the heights of "

@@ -13,6 +13,7 @@ from scipy.integrate import trapezoid
 from tables import table
 from theory import clean_channel
 from theory.clean_channel import DEPTH, MEAN, WHICH, Array
+from theory.settling import stokes_velocity
 
 REST = 0.05  # of the mean velocity
 PERCENTILES = (2.0, 98.0)
@@ -169,12 +170,27 @@ def carried(row, lower, settling, duration=0.8):
     return int(np.sum(np.maximum(np.ceil((duration - times) / interval), 0.0)))
 
 
-def needed_filling(row, start, settling):
-    """Share of the room between the cylinders that the grains of a row fill if all that the clean flow carries to the middle of
-    the published bed are in it: from `start` [m], over the published height."""
-    count = carried(row, start + 0.5 * row.bed_height, settling)
-    room = Array(row.per_row).open_area(start, start + row.bed_height) * DEPTH
-    return count * math.pi * row.d**3 / 6.0 / room
+def lowest(row):
+    """Where the grains of a row stop, m: none passes a throat narrower than itself."""
+    return Array(row.per_row).stops(row.d)
+
+
+def filling(count, row):
+    """Share of the room between the cylinders that `count` grains of a row fill over the height of its published bed."""
+    return count * math.pi * row.d**3 / 6.0 / (Array(row.per_row).open_area(lowest(row), lowest(row) + row.bed_height) * DEPTH)
+
+
+def needed_filling(row):
+    """The filling if all grains that the clean flow carries to the middle of the published bed are in it."""
+    rho = clean_channel.FLUID["rho"]  # grains are twice as dense
+    settling = stokes_velocity(2.0 * rho, rho, row.d, clean_channel.FLUID["mu"])
+    return filling(carried(row, lowest(row) + 0.5 * row.bed_height, settling), row)
+
+
+def pore_filling(y, row):
+    """The filling by grains at the heights y [n], m."""
+    y = np.asarray(y)
+    return filling(int(np.count_nonzero((y >= lowest(row)) & (y < lowest(row) + row.bed_height))), row)
 
 
 ALIKE = 0.05  # of P: the paper calls 3.62 and 3.70 "similar", 2.2 % apart, and 2.59 and 2.74 different, 5.6 %

@@ -93,32 +93,6 @@ TEST(SolidBox, NearestPointIsOnAFaceAnEdgeOrACorner) {
     EXPECT_NEAR(touched(plane, {0.9, 1.0, -7.0}, 1.0).at(0).distance, -0.1, 1e-15);
 }
 
-TEST(SphereWall, InsideAndOutside) {
-    const std::string common = "centre = [1, 2, 3]\nradius = 2.0\n";
-    const auto inside = shape_of<SphereWall>(common + "side = 'inside'");
-    const auto outside = shape_of<SphereWall>(common + "side = 'outside'");
-    int met = 0;
-    inside.touch(Vec3(1.0, 2.0, 4.5), 1.0, [&](const WallPoint& p) {
-        EXPECT_DOUBLE_EQ(p.distance, 0.5);
-        EXPECT_EQ(p.normal, Vec3(0.0, 0.0, -1.0));
-        ++met;
-    });
-    outside.touch(Vec3(1.0, 4.5, 3.0), 1.0, [&](const WallPoint& p) {
-        EXPECT_DOUBLE_EQ(p.distance, 0.5);
-        EXPECT_EQ(p.normal, Vec3(0.0, 1.0, 0.0));
-        ++met;
-    });
-    outside.touch(Vec3(1.0, 2.0, 3.0), 1.0, [&](const WallPoint& p) { // the centre: deepest, with some direction
-        EXPECT_DOUBLE_EQ(p.distance, -2.0);
-        EXPECT_DOUBLE_EQ(p.normal.norm(), 1.0);
-        ++met;
-    });
-    outside.touch(Vec3(1.0, 6.0, 3.0), 1.0, [&](const WallPoint&) { ADD_FAILURE(); });
-    EXPECT_EQ(met, 3);
-    EXPECT_THROW(shape_of<SphereWall>("centre = [1, 2, 3]\nradius = 0.0\nside = 'inside'"), InputError);
-    EXPECT_THROW(shape_of<SphereWall>(common + "side = 'left'"), InputError);
-}
-
 TEST(Cylinder, InsideAndOutside) {
     // Axis along (0, 1, 1)/sqrt 2 through (1, 0, 0); (1, 1, -1) t is across it at distance sqrt 2 t.
     const std::string_view common = "point = [1, 0, 0]\naxis = [0, 2, 2]\nradius = 2.0\n";
