@@ -80,7 +80,7 @@ TEST(Apertures, SphereArrayIsOfSecondOrder) {
         });
         errors.push_back(1.0 / (6.0 * std::numbers::pi * radius * flux) / 4.292 - 1.0);
     }
-    EXPECT_LT(std::abs(errors[2]), 0.01);
+    EXPECT_LT(std::abs(errors[2]), 0.02); // h^2/2r of the radius, and K goes as r^-3.4: verification/sphere_array
     EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2.0, 0.4);
     EXPECT_NEAR(std::log2(errors[1] / errors[2]), 2.0, 0.4);
 }
