@@ -57,7 +57,9 @@ struct ImplicitExchange {
 /// phi0 = 1 - z + z^2/2: explicit, second order, unstable for z > 2. It is here to show what the other two avoid.
 struct ExplicitExchange {
     static constexpr std::string_view name = "explicit";
-    static constexpr LawInfo info{"phi0 = 1 - z + z^2/2", "step < 2 tau_p", "Hairer, Norsett & Wanner 1993, II.1"};
+    static constexpr LawInfo info{"phi0 = 1 - z + z^2/2",
+                                  "step < 2 tau_p one way; two ways on a grid < 2 tau_p/(3 load) at great load",
+                                  "Hairer, Norsett & Wanner 1993, II.1"};
     static constexpr int most_iterations = 1;
     StepWeights operator()(double z) const { return {1.0 - z + 0.5 * z * z, 1.0 - 0.5 * z, 0.5}; }
 };
