@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 from drag_laws.drag_laws import ONE_SPHERE
-from theory import grid_fall, hasimoto
+from theory import grid_fall, grid_wake, hasimoto
 from theory.released_sphere import Sphere, speed_without_history
 
 
 def test_transform_of_the_gaussian():
     """1 at 0; exp(-(k w)^2/2) but for what is cut off beyond 3.5 deviations, .7 % of the kernel."""
     kw = np.array([0.0, 0.5, 1.0, 2.0])
-    assert grid_fall.gaussian_transform(kw) == pytest.approx(np.exp(-0.5 * kw**2), abs=0.007)
-    assert grid_fall.gaussian_transform(0.0) == pytest.approx(1.0, abs=1e-14)
+    assert grid_wake.transform("gaussian", kw) == pytest.approx(np.exp(-0.5 * kw**2), abs=0.007)
+    assert grid_wake.transform("gaussian", 0.0) == pytest.approx(1.0, abs=1e-14)
 
 
 def test_creeping_wake_in_a_cubic_box():

@@ -18,12 +18,11 @@ Left out: the wake's own momentum flux (second order in u/v), the porosity in fr
 kernel, sampling (2.7e-9 of the kernel for w = a), the solver's step.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-REACH = 3.5  # deviations: where the Gaussian is cut off
+from theory.grid_wake import GridScheme, box_waves
 
 
 class Box(NamedTuple):
@@ -44,29 +43,11 @@ class Modes(NamedTuple):
     of_cells: np.ndarray
 
 
-def gaussian_transform(kw):
-    """Of the Gaussian cut off at REACH, 1 at 0."""
-    node, weight = np.polynomial.legendre.leggauss(64)
-    q = 0.5 * REACH * (node + 1.0)
-    mass = weight * q**2 * np.exp(-0.5 * q**2)
-    return np.sinc(np.multiply.outer(np.asarray(kw, float), q) / math.pi) @ mass / mass.sum()
-
-
 def modes(box, least=1e-9):
     """Of the box; waves whose g^2 is below `least` are left out."""
-    size = np.asarray(box.size, float)
-    counts = np.rint(size / box.cell).astype(int)
-    n = np.stack(np.meshgrid(*[np.arange((count + 1) // 2) for count in counts], indexing="ij"), axis=-1).reshape(-1, 3)[1:]
-    k = 2.0 * math.pi * n / size
-    modulus = np.sqrt((k**2).sum(axis=1))
-    table = np.linspace(0.0, modulus.max(), 4000)
-    product = np.interp(modulus, table, gaussian_transform(table * box.width)) ** 2
-    kept = product > least
-    k, n, product = k[kept], n[kept], product[kept]
-    grid = 2.0 / box.cell * np.sin(0.5 * k * box.cell)
-    square = (grid**2).sum(axis=1)
-    share = 2.0 ** (n > 0).sum(axis=1) / size.prod() * product
-    return Modes(k[:, 2], square, grid[:, 2] ** 2 / square, share, share * np.cos(0.5 * k[:, 2] * box.cell))
+    waves = box_waves(GridScheme("gaussian", box.width, box.cell), box.size, least)
+    square, turn = (waves.grid**2).sum(axis=1), waves.k[:, 2]
+    return Modes(turn, square, waves.grid[:, 2] ** 2 / square, waves.share, waves.share * np.cos(0.5 * turn * box.cell))
 
 
 class Fall(NamedTuple):

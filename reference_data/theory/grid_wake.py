@@ -55,20 +55,33 @@ class GridModes(NamedTuple):
     turn: np.ndarray
 
 
-def box_modes(scheme, size, axis=2, least=1e-9):
-    """Modes of a periodic box (size [3]) around one grain that moves along `axis`; those whose filter squared is below `least` are left out."""
+class Waves(NamedTuple):
+    """One entry for each set of mirrored waves: k_i and K_i [n, 3] of (1), and the share of the box of each, the filter squared in it."""
+
+    k: np.ndarray
+    grid: np.ndarray
+    share: np.ndarray
+
+
+def box_waves(scheme, size, least):
+    """Of a periodic box (size [3]); those whose filter squared is below `least` are left out."""
     size = np.asarray(size, float)
     cells = np.rint(size / scheme.cell).astype(int)
     n = np.stack(np.meshgrid(*[np.arange((count + 1) // 2) for count in cells], indexing="ij"), axis=-1).reshape(-1, 3)[1:]
     wave = 2.0 * math.pi * n / size
-    grid = 2.0 / scheme.cell * np.sin(0.5 * wave * scheme.cell)
     modulus = np.sqrt((wave**2).sum(axis=1))
     table = np.linspace(0.0, modulus.max(), 4000)
-    filtered = np.interp(modulus, table, transform(scheme.kernel, table * scheme.width))
-    share = 2.0 ** (n > 0).sum(axis=1) / size.prod() * filtered**2
-    kept = filtered**2 > least
-    k = np.sqrt((grid**2).sum(axis=1))
-    return GridModes(k[kept], (grid[:, axis] / k)[kept], share[kept], wave[kept, axis])
+    product = np.interp(modulus, table, transform(scheme.kernel, table * scheme.width)) ** 2
+    kept = product > least
+    wave, n, product = wave[kept], n[kept], product[kept]
+    return Waves(wave, 2.0 / scheme.cell * np.sin(0.5 * wave * scheme.cell), 2.0 ** (n > 0).sum(axis=1) / size.prod() * product)
+
+
+def box_modes(scheme, size, axis=2, least=1e-9):
+    """Modes of a periodic box (size [3]) around one grain that moves along `axis`; those whose filter squared is below `least` are left out."""
+    waves = box_waves(scheme, size, least)
+    k = np.sqrt((waves.grid**2).sum(axis=1))
+    return GridModes(k, waves.grid[:, axis] / k, waves.share, waves.k[:, axis])
 
 
 class Memory(self_disturbance_history.Memory):

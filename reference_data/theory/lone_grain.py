@@ -33,6 +33,21 @@ def by_law(s, t):
     return np.concatenate([np.zeros(first), speed_without_history(sphere(s), t[first:], False)])
 
 
+def fall(run):
+    """(t, v), s and m/s, v downwards, of the probe `v` of a run."""
+    t, v = run.series("v")
+    return t, -np.ravel(v)
+
+
+def from_rest(settled, s, t):
+    """(v, u_self) of settled(s, times), which wants times > 0, at times t that may begin with 0."""
+    t = np.asarray(t, float)
+    later = t > 0.0
+    v, u = np.zeros_like(t), np.zeros_like(t)
+    v[later], u[later] = settled(s, tuple(t[later]))
+    return v, u
+
+
 class OwnVolume(Sphere):
     """A grain that meets the backflow of its own moving porosity: in v' = (1 + b) v, drag = drag(v' - u_self) and m/(1 + b) dv'/dt is its
     inertia. Where a mean gradient balances the weight of a box, the grain's is less by its share of the box."""

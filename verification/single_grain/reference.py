@@ -12,7 +12,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
 from theory import self_disturbance, self_disturbance_history, settling  # noqa: E402
-from theory.lone_grain import OwnVolume, backflow, by_law, law_of, terminal_speed  # noqa: E402
+from theory.lone_grain import OwnVolume, backflow, by_law, fall, from_rest, law_of, terminal_speed  # noqa: E402
 
 UNITS = {"off_theory": "1", "off_plain_law": "1", "off_law": "1"}
 SHARE, FLOOR = 0.10, 0.005  # of the disturbance, of u_t: the larger of both is the bound
@@ -72,17 +72,7 @@ def settled(s, times):
 
 def theory(s, t):
     """The same at times t that may begin with 0."""
-    t = np.asarray(t, float)
-    later = t > 0.0
-    v, u = np.zeros_like(t), np.zeros_like(t)
-    v[later], u[later] = settled(s, tuple(t[later]))
-    return v, u
-
-
-def fall(run):
-    """(t, v), s and m/s, v downwards."""
-    t, v = run.series("v")
-    return t, -np.ravel(v)
+    return from_rest(settled, s, t)
 
 
 def measure(quantity, run):
