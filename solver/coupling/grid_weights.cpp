@@ -174,32 +174,68 @@ std::vector<std::size_t> neighbours(const GridFluid& f, const Place& p) {
     return found;
 }
 
-/// Solids move out of cells that hold more than `most` of them, in equal parts to the neighbours. Returns how many
+/// Takes solids out of cells that hold more than `most` of them, in equal parts to the neighbours. Returns how many
 /// cells were too full at the start.
-std::int64_t relieve(const GridFluid& f, const Field<double>& room, double most, std::vector<double>& solid) {
+std::int64_t relieve(const GridFluid& f, const Field<double>& room, double most, Field<double>& solid, Relief& relief) {
     constexpr int most_passes = 1000;
     const Block cells = f.grid.cells();
     std::int64_t count = -1;
     for (int pass = 0; pass < most_passes; ++pass) {
-        std::vector<std::pair<std::size_t, double>> moved;
+        Relief step;
+        std::vector<Relief::Move>& moves = step.passes.emplace_back();
         std::int64_t full = 0;
         for (std::size_t k = 0; k < solid.size(); ++k) {
             const double excess = solid[k] - most * room[k];
             if (room[k] == 0.0 || excess <= 1e-12 * room[k]) continue;
             ++full;
-            const std::vector<std::size_t> beside = neighbours(f, cells.place(k));
-            if (beside.empty()) continue;
-            moved.emplace_back(k, -excess);
-            for (const std::size_t q : beside) moved.emplace_back(q, excess / static_cast<double>(beside.size()));
+            std::vector<std::size_t> beside = neighbours(f, cells.place(k));
+            if (!beside.empty()) moves.push_back({k, excess / solid[k], std::move(beside)});
         }
         if (count < 0) count = full;
-        if (moved.empty()) break;
-        for (const auto& [k, amount] : moved) solid[k] += amount;
+        if (moves.empty()) break;
+        step.spread(solid);
+        relief.passes.push_back(std::move(moves));
     }
     return count;
 }
 
 } // namespace
+
+bool is_open(const GridFluid& f, const Vec3& x) {
+    Place p{0, 0, 0};
+    for (std::size_t d = 0; d < f.dimensions(); ++d) {
+        const Axis& axis = f.grid.axis[d];
+        const double at = x[static_cast<Eigen::Index>(d)];
+        if (!inside(axis, at)) return false;
+        p[d] = ((cell_at(axis, at) % axis.cells()) + axis.cells()) % axis.cells();
+    }
+    return f.open.cell[f.grid.cells().at(p)] > 0.0;
+}
+
+void Relief::spread(Field<double>& amount) const {
+    for (const std::vector<Move>& moves : passes) {
+        std::vector<double> moved;
+        moved.reserve(moves.size());
+        for (const Move& m : moves) moved.push_back(m.share * amount[m.from]);
+        for (std::size_t k = 0; k < moves.size(); ++k) {
+            amount[moves[k].from] -= moved[k];
+            for (const std::size_t to : moves[k].to) amount[to] += moved[k] / static_cast<double>(moves[k].to.size());
+        }
+    }
+}
+
+void Relief::gather(std::vector<Vec3>& field) const {
+    for (auto pass = passes.rbegin(); pass != passes.rend(); ++pass) {
+        std::vector<Vec3> seen;
+        seen.reserve(pass->size());
+        for (const Move& m : *pass) {
+            Vec3 mean = Vec3::Zero();
+            for (const std::size_t to : m.to) mean += field[to] / static_cast<double>(m.to.size());
+            seen.emplace_back((1.0 - m.share) * field[m.from] + m.share * mean);
+        }
+        for (std::size_t k = 0; k < seen.size(); ++k) field[(*pass)[k].from] = seen[k];
+    }
+}
 
 void measure(GridWeights& w, const GridFluid& f) {
     const Block cells = f.grid.cells();
@@ -229,15 +265,25 @@ Vec3 gathered_velocity(const GridWeights& w, const Velocity& u, std::size_t j) {
 }
 
 BoundedPorosity porosity(const GridFluid& f, const GridWeights& w, const std::vector<double>& volume, double least) {
-    std::vector<double> solid(f.eps.size(), 0.0);
+    Field<double> solid(f.eps.size(), 0.0);
     for (std::size_t j = 0; j < volume.size(); ++j)
         w.cells.spread(j, [&](std::size_t k, double weight) { solid[k] += weight * volume[j]; });
     BoundedPorosity found;
-    found.bounded = relieve(f, w.cell_volume, 1.0 - least, solid);
+    found.bounded = relieve(f, w.cell_volume, 1.0 - least, solid, found.relief);
     found.eps.assign(solid.size(), 1.0);
     for (std::size_t k = 0; k < solid.size(); ++k)
         if (w.cell_volume[k] > 0.0) found.eps[k] = std::max(1.0 - solid[k] / w.cell_volume[k], least);
     return found;
+}
+
+Field<double> per_volume(const GridWeights& w, const Relief& relief, const std::vector<double>& of_grains) {
+    Field<double> sum(w.cell_volume.size(), 0.0);
+    for (std::size_t j = 0; j < of_grains.size(); ++j)
+        if (of_grains[j] != 0.0)
+            w.cells.spread(j, [&](std::size_t k, double weight) { sum[k] += weight * of_grains[j]; });
+    relief.spread(sum);
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] = w.cell_volume[k] > 0.0 ? sum[k] / w.cell_volume[k] : 0.0;
+    return sum;
 }
 
 namespace {

@@ -50,19 +50,42 @@ void set_weights(GridWeights& weights, const GridFluid& fluid, const std::vector
 /// u_j = sum_a P_aj u_a, component by component [m/s].
 Vec3 gathered_velocity(const GridWeights& weights, const Velocity& u, std::size_t j);
 
+/// Whether the cell around x is open.
+bool is_open(const GridFluid& fluid, const Vec3& x);
+
+/// A matrix M whose columns sum to one: how what grains have in cells that would hold too much of them moves to others.
+/// The product of its passes; each takes shares of some cells to their neighbours, in equal parts.
+struct Relief {
+    struct Move {
+        std::size_t from;
+        double share;
+        std::vector<std::size_t> to;
+    };
+    std::vector<std::vector<Move>> passes;
+
+    /// M q for amounts by cell.
+    void spread(Field<double>& amount) const;
+    /// q M: of a field of the fluid, what grains gather with the weights P where M P are the ones that hold.
+    void gather(std::vector<Vec3>& field) const;
+};
+
 /// Fluid fractions by cell, and how many cells would have had less than they may.
 struct BoundedPorosity {
     Field<double> eps;
     std::int64_t bounded = 0;
+    Relief relief;
 };
 
-/// eps_a = 1 - sum_j V_j P_aj/V_a for grains of `volume` [m3] by id. Where it is less than `least`, what is too much
-/// goes to the open neighbours, from cell to cell until there is room.
+/// eps_a = 1 - sum_j V_j (M P)_aj/V_a for grains of `volume` [m3] by id. Where it is less than `least` without M, what
+/// is too much goes to the open neighbours, from cell to cell until there is room.
 BoundedPorosity porosity(const GridFluid& fluid, const GridWeights& weights, const std::vector<double>& volume,
                          double least);
 
-/// What the fluid is at the grains, by cell; the grains' weights for it are those of the porosity, so that what the
-/// gradient pushes in both together is the whole of it.
+/// sum_j q_j (M P)_aj/V_a: what grains have, by id, per volume of the cells.
+Field<double> per_volume(const GridWeights& weights, const Relief& relief, const std::vector<double>& of_grains);
+
+/// What the fluid is at the grains, by cell; the grains' weights for the stress are those of the porosity, M P, so that
+/// what the gradient pushes in both together is the whole of it.
 struct CellFields {
     std::vector<Vec3> stress;              // -grad p + div tau [N/m3]
     std::vector<Eigen::Matrix3d> gradient; // d u_i/d x_j [1/s]

@@ -75,14 +75,30 @@ double face_eps(const GridFluid& f, std::size_t c, const Place& face) {
     return 0.5 * (f.eps[cells.at(below)] + f.eps[cells.at(above)]);
 }
 
+double face_mean(const GridFluid& f, const Field<double>& of_cells, std::size_t c, const Place& face) {
+    if (of_cells.empty()) return 0.0;
+    double sum = 0.0;
+    int count = 0;
+    for (const int cell : {f.grid.axis[c].cell_below(face[c]), f.grid.axis[c].cell_above(face[c])}) {
+        Place p = face;
+        p[c] = cell;
+        if (cell >= 0) sum += of_cells[f.grid.cells().at(p)], ++count;
+    }
+    return sum / count;
+}
+
 double open_area(const GridFluid& f, std::size_t c, const Place& face) {
     return face_eps(f, c, face) * f.open.face[c][f.grid.faces(c).at(face)] * f.grid.face_area(c, face);
 }
 
-RowMatrix divergence_rows(const GridFluid& f, std::size_t c) {
+RowMatrix divergence_rows(const GridFluid& f, std::size_t c, const Field<double>& share) {
     const Block cells = f.grid.cells(), faces = f.grid.faces(c);
     RowMatrix rows(f.unknown_pressures, f.unknowns[c]);
     rows.reserve(2 * static_cast<Eigen::Index>(f.unknown_pressures));
+    const auto area_of = [&](const Place& p) {
+        if (share.empty()) return open_area(f, c, p);
+        return (face_eps(f, c, p) + face_mean(f, share, c, p)) * f.open.face[c][faces.at(p)] * f.grid.face_area(c, p);
+    };
     for_each_place(cells, [&](const Place& p, std::size_t k) {
         const int row = f.unknown_pressure[k];
         if (row < 0) return;
@@ -90,8 +106,8 @@ RowMatrix divergence_rows(const GridFluid& f, std::size_t c) {
         above[c] = f.grid.axis[c].face_above(p[c]);
         std::array<std::pair<int, double>, 2> entry{
             {{f.unknown[c][faces.at(p)], 0.0}, {f.unknown[c][faces.at(above)], 0.0}}};
-        if (entry[0].first >= 0) entry[0].second = -open_area(f, c, p);
-        if (entry[1].first >= 0) entry[1].second = open_area(f, c, above);
+        if (entry[0].first >= 0) entry[0].second = -area_of(p);
+        if (entry[1].first >= 0) entry[1].second = area_of(above);
         if (entry[1].first < entry[0].first) std::swap(entry[0], entry[1]); // the first face of a periodic axis
         rows.startVec(row);
         if (entry[0].first == entry[1].first) return; // the only cell of a periodic axis: what enters leaves
@@ -122,7 +138,8 @@ Eigen::VectorXd known_divergence(const GridFluid& f) {
 
 void change_porosity(GridFluid& f, Field<double> eps) {
     f.eps_before_2 = std::move(f.eps_before);
-    f.eps_before = std::move(f.eps);
+    f.eps_before = std::move(f.eps_taken.empty() ? f.eps : f.eps_taken);
+    f.eps_taken.clear();
     f.eps = std::move(eps);
 }
 

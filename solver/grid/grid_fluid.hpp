@@ -11,6 +11,7 @@
 #include "core/inlet_profiles.hpp"
 #include "grid/advection.hpp"
 #include "grid/apertures.hpp"
+#include "grid/foreseen_grains.hpp"
 #include "grid/grid.hpp"
 #include "grid/grid_sources.hpp"
 #include "grid/resistance.hpp"
@@ -52,12 +53,16 @@ struct GridFluid {
     Velocity u_before; // a step before, empty before the second step
     Field<double> p;   // by cell [Pa]
     Field<double> eps; // by cell, at the end of the last step; while a step is made, at its end
-    // one and two steps before eps; empty as long as they are not known, or where eps never changes
+    // What the mass equation took eps to be at the end of the last step: eps and what it foresaw of the grains' ways
+    // beyond it. Empty where that is eps itself.
+    Field<double> eps_taken;
+    // one and two steps before eps, as taken; empty as long as they are not known, or where eps never changes
     Field<double> eps_before, eps_before_2;
 
     // what grains do to the fluid in the coming step, by face; empty without grains
     Velocity drag; // per velocity [N s/m], implicit
     Velocity push; // [N]
+    ForeseenGrains foreseen;
 
     // which faces and cells are solved for: their number, by face and cell, -1 where they are not
     std::array<std::vector<int>, 3> unknown;
@@ -81,6 +86,9 @@ bool has_outflow(const GridFluid& fluid);
 /// Mean of eps on either side of a face; on a side of the box, continued from within.
 double face_eps(const GridFluid& fluid, std::size_t c, const Place& face);
 
+/// Mean of a field of the cells on either side of a face; on a side of the box the one cell's; 0 of an empty field.
+double face_mean(const GridFluid& fluid, const Field<double>& of_cells, std::size_t c, const Place& face);
+
 /// eps times the open area of a face [m2].
 double open_area(const GridFluid& fluid, std::size_t c, const Place& face);
 
@@ -102,8 +110,18 @@ MomentumRows momentum_rows(const GridFluid& fluid, std::size_t c, const Velocity
 /// [N].
 Field<double> friction_on_faces(const GridFluid& fluid, std::size_t c);
 
-/// div(eps u) over the cells by unknown velocities of component c [m2].
-RowMatrix divergence_rows(const GridFluid& fluid, std::size_t c);
+/// div((eps + share) u) over the cells by unknown velocities of component c [m2]; `share` by cell, or empty.
+RowMatrix divergence_rows(const GridFluid& fluid, std::size_t c, const Field<double>& share);
+
+/// -div(yields grad p) over the cells by unknown pressures [m4 s/kg]; no rows where nothing yields.
+RowMatrix yield_rows(const GridFluid& fluid);
+
+/// What grains are foreseen to carry out of the cells beyond what follows the velocity and the pressure at the step's
+/// end [m3/s]; the present velocity is that of the step's start.
+Eigen::VectorXd drift_out(const GridFluid& fluid);
+
+/// After a step that began with the velocity `before`: eps_taken.
+void take_foreseen(GridFluid& fluid, const Velocity& before, double dt);
 
 /// What prescribed velocities carry out of the cells [m3/s].
 Eigen::VectorXd known_divergence(const GridFluid& fluid);

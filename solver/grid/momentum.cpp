@@ -6,6 +6,7 @@
 // the matrix is symmetric, and creeping flow the one of least dissipation among those that keep the volume.
 #include "core/parallel.hpp"
 #include "grid/grid_fluid.hpp"
+#include "grid/matrix_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,27 +14,6 @@
 namespace plumb {
 
 namespace {
-
-/// Entries of a row of a matrix, in the order of their columns.
-struct Entries {
-    struct Entry {
-        int column;
-        double value;
-    };
-    std::array<Entry, 26> entry; // those from `size` on are not set
-    std::size_t size = 0;
-
-    void put(int column, double value) {
-        std::size_t at = size;
-        while (at > 0 && entry[at - 1].column >= column) --at;
-        if (at < size && entry[at].column == column) {
-            entry[at].value += value;
-            return;
-        }
-        for (std::size_t e = size++; e > at; --e) entry[e] = entry[e - 1];
-        entry[at] = {column, value};
-    }
-};
 
 /// One row while it is made. What second upstream neighbours carry is kept apart, so that the preconditioner can do
 /// without them.
@@ -72,38 +52,6 @@ struct RowForce {
     void couple_far(int column, double coefficient, double value) { couple(column, coefficient, value); }
 };
 
-/// A matrix, a share of its rows after the other.
-struct MatrixRows {
-    std::vector<int> count, column;
-    std::vector<double> value;
-
-    void add(const Entries& entries) {
-        count.push_back(static_cast<int>(entries.size));
-        for (std::size_t e = 0; e < entries.size; ++e) {
-            column.push_back(entries.entry[e].column);
-            value.push_back(entries.entry[e].value);
-        }
-    }
-};
-
-RowMatrix matrix_of(const std::vector<MatrixRows>& parts, Eigen::Index n) {
-    RowMatrix matrix(n, n);
-    int* begin = matrix.outerIndexPtr();
-    std::vector<std::size_t> first; // row of each part
-    Eigen::Index row = 0;
-    begin[0] = 0;
-    for (const MatrixRows& part : parts) {
-        first.push_back(static_cast<std::size_t>(row));
-        for (const int count : part.count) begin[row + 1] = begin[row] + count, ++row;
-    }
-    matrix.resizeNonZeros(begin[n]);
-    parallel_for(parts.size(), [&](std::size_t q) {
-        std::copy(parts[q].column.begin(), parts[q].column.end(), matrix.innerIndexPtr() + begin[first[q]]);
-        std::copy(parts[q].value.begin(), parts[q].value.end(), matrix.valuePtr() + begin[first[q]]);
-    });
-    return matrix;
-}
-
 class RowMaker {
 public:
     /// `all`: what is carried and what a porous medium takes too, else friction alone.
@@ -123,11 +71,18 @@ public:
     /// Adds all that acts on the control volume of a face to a row or its force.
     template <class Made> void make(const Place& p, Made& made) const {
         if (!friction_only) resist(p, made);
+        const double viscosity = f.viscosity * borne(p);
         for (const int way : {0, 1}) {
-            along(p, way, made);
+            along(p, way, viscosity, made);
             for (std::size_t d = 0; d < f.dimensions(); ++d)
-                if (d != c) across(p, d, way, made);
+                if (d != c) across(p, d, way, viscosity, made);
         }
+    }
+
+    /// Share of the friction on a face's fluid that its row bears, with what grains hand on of theirs.
+    double borne(const Place& p) const {
+        if (friction_only || f.foreseen.hands_on.empty()) return 1.0;
+        return 1.0 + face_mean(f, f.foreseen.hands_on, c, p) / face_eps(f, c, p);
     }
 
     /// rho eps V of the control volume of a face [kg].
@@ -237,7 +192,7 @@ private:
     }
 
     /// Through the middle of the cell on one side along the component's own axis.
-    template <class Made> void along(const Place& p, int way, Made& row) const {
+    template <class Made> void along(const Place& p, int way, double viscosity, Made& row) const {
         const int cell = way == 0 ? axis(c).cell_below(p[c]) : axis(c).cell_above(p[c]);
         if (cell < 0) return; // an outflow
         const Place middle = with(p, c, cell);
@@ -245,7 +200,7 @@ private:
         const double full = f.grid.face_area(c, p), volume = f.open.cell[cells.at(middle)] * f.grid.cell_volume(middle);
         const double own = share(p) * full, next = share(other) * full;
         if (volume > 0.0) {
-            const double friction = f.viscosity * f.eps[cells.at(middle)] * own / volume;
+            const double friction = viscosity * f.eps[cells.at(middle)] * own / volume;
             couple(row, other, friction * next);
             row.hold(friction * (own - next)); // the rest of the polygon's sides is a wall at rest
         }
@@ -279,14 +234,14 @@ private:
     }
 
     /// Through the side towards the next face across the component's axis.
-    template <class Made> void across(const Place& p, std::size_t d, int way, Made& row) const {
+    template <class Made> void across(const Place& p, std::size_t d, int way, double viscosity, Made& row) const {
         double area = axis(c).dual_width(p[c]);
         for (std::size_t e = 0; e < 3; ++e)
             if (e != c && e != d) area *= axis(e).width(p[e]);
         const int next = axis(d).next(p[d], way);
         const std::size_t k = faces.at(p), at = static_cast<std::size_t>(way), back = 1 - at;
         const double own = f.open.to_edge(c, k, d, at) * axis(d).width(p[d]);
-        const double open = edge_share(p, d, way), all = f.viscosity * edge_eps(p, d, next) * area;
+        const double open = edge_share(p, d, way), all = viscosity * edge_eps(p, d, next) * area;
         const double closed = edge_share(p, d, 1 - way) - open; // a wall at rest lies between the two edges
         if (closed > 0.0) row.hold(closed * all / (f.open.to_wall(c, k, d, at) * axis(d).width(p[d])));
         if (open == 0.0) return;
@@ -316,9 +271,9 @@ private:
 double outflow_force(const GridFluid& f, std::size_t c, const Place& p) {
     const Axis& axis = f.grid.axis[c];
     if (axis.periodic) return 0.0;
-    if (p[c] == 0) return open_area(f, c, p) * f.sides[c][0].pressure;
-    if (p[c] == axis.cells()) return -open_area(f, c, p) * f.sides[c][1].pressure;
-    return 0.0;
+    if (p[c] != 0 && p[c] != axis.cells()) return 0.0;
+    const double area = open_area(f, c, p) * (1.0 + face_mean(f, f.foreseen.hands_on, c, p) / face_eps(f, c, p));
+    return p[c] == 0 ? area * f.sides[c][0].pressure : -area * f.sides[c][1].pressure;
 }
 
 } // namespace

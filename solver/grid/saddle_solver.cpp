@@ -49,28 +49,36 @@ VectorXd product(const SaddleSystem& s, const SaddleLayout& at, const VectorXd& 
         y.segment(at.begin[c], u.size()) = s.momentum[c].matrix * u - s.gradient[c] * p;
         outflow += s.divergence[c] * u;
     }
+    if (s.yield.rows() > 0) outflow += s.yield * p;
     y.segment(at.begin[3], p.size()) = outflow;
     return y;
 }
 
 } // namespace
 
-SaddleSystem saddle_system(const GridFluid& f, const Velocity& carrier, double per_time) {
+SaddleSystem saddle_system(const GridFluid& f, const Velocity& carrier, double now, double dt) {
     SaddleSystem s;
     s.dimensions = f.dimensions();
     s.closed = !has_outflow(f);
+    Field<double> following = f.foreseen.follows;
+    for (double& share : following) share *= now;
     double momentum = 0.0, mass = 0.0;
     for (std::size_t c = 0; c < s.dimensions; ++c) {
-        s.momentum[c] = momentum_rows(f, c, carrier, per_time);
-        s.divergence[c] = divergence_rows(f, c);
+        s.momentum[c] = momentum_rows(f, c, carrier, now / dt);
+        s.divergence[c] = divergence_rows(f, c, following);
         momentum += s.momentum[c].matrix.diagonal().squaredNorm();
         mass += s.divergence[c].squaredNorm();
     }
     s.pressure_scale = std::sqrt(momentum / mass);
     for (std::size_t c = 0; c < s.dimensions; ++c) {
         s.divergence[c] *= s.pressure_scale;
-        s.gradient[c] = s.divergence[c].transpose();
+        if (following.empty())
+            s.gradient[c] = s.divergence[c].transpose();
+        else
+            s.gradient[c] = divergence_rows(f, c, f.foreseen.hands_on).transpose(), s.gradient[c] *= s.pressure_scale;
     }
+    s.yield = yield_rows(f);
+    s.yield *= now * s.pressure_scale * s.pressure_scale;
     s.known_divergence = s.pressure_scale * known_divergence(f);
     return s;
 }
@@ -98,13 +106,14 @@ ProjectionPreconditioner::ProjectionPreconditioner(const SaddleSystem& system)
         const RowMatrix part = system.divergence[c] * scaled;
         poisson = c == 0 ? part : RowMatrix(poisson + part);
     }
+    if (system.yield.rows() > 0) poisson += system.yield;
     if (system.closed && poisson.rows() > 0) poisson.coeffRef(0, 0) *= 2.0; // the level of p is arbitrary: pinned here
     poisson_ = std::make_unique<Multigrid>(poisson, sweeps);
 }
 
 VectorXd ProjectionPreconditioner::schur_inverse(const VectorXd& r) {
     const VectorXd q = poisson_->solve(r, pressure_reduction, most_cycles);
-    VectorXd middle = VectorXd::Zero(r.size());
+    VectorXd middle = system_->yield.rows() > 0 ? VectorXd(system_->yield * q) : VectorXd(VectorXd::Zero(r.size()));
     for (std::size_t c = 0; c < system_->dimensions; ++c) {
         const VectorXd w = inverse_diagonal_[c].cwiseProduct(system_->gradient[c] * q);
         const VectorXd aw = system_->momentum[c].matrix * w;

@@ -1,7 +1,9 @@
 // Velocity and pressure of one step together,
-//     A u - D^T p = f,    D u = s,
-// with A the momentum rows, D the divergence: Krylov's method with one projection step as its preconditioner, so that
-// nothing of the splitting is left in the answer (Griffith 2009, J. Comput. Phys. 228, 7565).
+//     A u - G p = f,    D u + Y p = s,
+// with A the momentum rows, D the divergence, G its transpose and Y = 0 but where grains are foreseen (G and D then
+// have the stress and the volume of grains in them, Y what grains give way to a gradient): Krylov's method with one
+// projection step as its preconditioner, so that nothing of the splitting is left in the answer (Griffith 2009, J.
+// Comput. Phys. 228, 7565).
 #pragma once
 
 #include "grid/multigrid.hpp"
@@ -14,7 +16,8 @@ namespace plumb {
 /// `pressure_scale`, the last unknowns are p over it.
 struct SaddleSystem {
     std::array<MomentumRows, 3> momentum;
-    std::array<RowMatrix, 3> divergence, gradient; // D and its transpose, by component
+    std::array<RowMatrix, 3> divergence, gradient; // D and G, by component
+    RowMatrix yield;                               // Y; without rows where it is 0
     Eigen::VectorXd known_divergence;              // weighed like the rows of mass
     std::size_t dimensions = 2;
     double pressure_scale = 1.0; // [kg/(m2 s)]
@@ -22,8 +25,9 @@ struct SaddleSystem {
 };
 
 /// The system of the present boundaries, apertures and porosity, with `carrier` the velocities that carry momentum and
-/// mass times `per_time` [1/s] added.
-SaddleSystem saddle_system(const GridFluid& fluid, const Velocity& carrier, double per_time);
+/// the mass of the fluid added as the difference in time of a step of `dt` [s] has it: now/dt times, now 1 over one
+/// step or 1.5 over two.
+SaddleSystem saddle_system(const GridFluid& fluid, const Velocity& carrier, double now, double dt);
 
 /// All unknowns in one vector: the components of u, then p.
 struct SaddleLayout {
@@ -32,8 +36,9 @@ struct SaddleLayout {
 };
 SaddleLayout layout(const SaddleSystem& system);
 
-/// An approximate inverse: A by multigrid (without second upstream neighbours), and the Schur complement D A^-1 D^T by
-///     S^-1 = L^-1 (D Q^-1 A Q^-1 D^T) L^-1,    L = D Q^-1 D^T,    Q = diag A
+/// An approximate inverse: A by multigrid (without second upstream neighbours), and the Schur complement D A^-1 G + Y
+/// by
+///     S^-1 = L^-1 (D Q^-1 A Q^-1 G + Y) L^-1,    L = D Q^-1 G + Y,    Q = diag A
 /// (least-squares commutator: Elman et al. 2006, SIAM J. Sci. Comput. 27, 1651), which is a projection step where A is
 /// diagonal and knows friction, drag and advection where it is not. Cheap to make, so each step makes its own.
 class ProjectionPreconditioner {

@@ -168,9 +168,11 @@ void Loader::load_sph(SphFluid& f) const {
 }
 
 void Loader::load_grid(GridFluid& f) const {
-    const std::vector<std::int64_t> two_steps = integers("grid/two_steps", 2); // of the velocity, of the porosity
+    const std::vector<std::int64_t> two_steps =
+        integers("grid/two_steps", 3); // of the velocity, of the porosity; eps_taken
     if (two_steps[0] != 0) f.u_before = f.u;
     if (two_steps[1] != 0) f.eps_before = f.eps;
+    if (two_steps[2] != 0) f.eps_taken = f.eps;
     for_each_grid_field(f, [&](const std::string& name, Field<double>& field) {
         const std::vector<double> values = doubles(name, field.size());
         field.assign(values.begin(), values.end());

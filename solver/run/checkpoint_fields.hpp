@@ -53,6 +53,7 @@ template <class Fluid, class Visit> void for_each_grid_field(Fluid& f, Visit&& v
     }
     visit("grid/p", f.p);
     visit("grid/eps", f.eps);
+    if (!f.eps_taken.empty()) visit("grid/eps_taken", f.eps_taken);
     if (!f.eps_before.empty()) visit("grid/eps_before", f.eps_before);
 }
 

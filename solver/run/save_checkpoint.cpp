@@ -60,8 +60,8 @@ void write_grid(Hdf5Writer& file, const GridFluid& f) {
     for_each_grid_field(f, [&](const std::string& name, const Field<double>& field) {
         file.write(name, std::span<const double>(field), {field.size()});
     });
-    file.write("grid/two_steps",
-               std::vector<std::int64_t>{f.u_before[0].empty() ? 0 : 1, f.eps_before.empty() ? 0 : 1});
+    file.write("grid/two_steps", std::vector<std::int64_t>{f.u_before[0].empty() ? 0 : 1, f.eps_before.empty() ? 0 : 1,
+                                                           f.eps_taken.empty() ? 0 : 1});
     file.write("grid/iterations", std::vector<std::int64_t>{f.iterations});
     file.write("grid/residual", std::vector<double>{f.greatest_residual});
 }

@@ -43,7 +43,7 @@ Eigen::VectorXd source_at(const GridFluid& f, std::size_t c, double time) {
 }
 
 /// Right-hand side: what the last steps leave, forces, known velocities, what the porosity gains.
-Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, double dt, double time) {
+Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, double now, double dt, double time) {
     const SaddleLayout at = layout(s);
     Eigen::VectorXd right(at.size);
     const bool two = two_steps_known(f);
@@ -60,6 +60,7 @@ Eigen::VectorXd right_hand_side(const GridFluid& f, const SaddleSystem& s, doubl
             right.segment(at.begin[c], before.size()) += unknowns(f, c, [&](std::size_t k) { return f.push[c][k]; });
     }
     right.tail(s.known_divergence.size()) = -s.known_divergence - s.pressure_scale * porosity_gain(f, dt);
+    if (!f.foreseen.drift.empty()) right.tail(s.known_divergence.size()) -= (now * s.pressure_scale) * drift_out(f);
     return right;
 }
 
@@ -71,9 +72,10 @@ void advance_grid(GridFluid& f, double dt, std::int64_t step) {
     const double time = dt * static_cast<double>(step);
     if (f.medium && !is_steady(*f.medium)) change_porosity(f, medium_porosity(f, time));
     const Velocity carrier = continued(f);
-    const SaddleSystem s = saddle_system(f, carrier, (two_steps_known(f) ? 1.5 : 1.0) / dt);
+    const double now = two_steps_known(f) ? 1.5 : 1.0; // what the difference in time has of the step's end
+    const SaddleSystem s = saddle_system(f, carrier, now, dt);
     const SaddleLayout at = layout(s);
-    const Eigen::VectorXd right = right_hand_side(f, s, dt, time);
+    const Eigen::VectorXd right = right_hand_side(f, s, now, dt, time);
     Eigen::VectorXd x(at.size);
     for (std::size_t c = 0; c < f.dimensions(); ++c)
         x.segment(at.begin[c], f.unknowns[c]) = unknowns(f, c, [&](std::size_t k) { return carrier[c][k]; });
@@ -86,12 +88,14 @@ void advance_grid(GridFluid& f, double dt, std::int64_t step) {
     if (!(report.residual <= 2.0 * f.residual))
         throw Diverged(step, time, "residual of the fluid's equations", -1, report.residual,
                        "the step's linear equations were not solved");
+    const Velocity before = f.u;
     if (f.second_order) f.u_before = f.u;
     for (std::size_t c = 0; c < f.dimensions(); ++c)
         for (std::size_t k = 0; k < f.u[c].size(); ++k)
             if (f.unknown[c][k] >= 0) f.u[c][k] = x[at.begin[c] + f.unknown[c][k]];
     for (std::size_t k = 0; k < f.p.size(); ++k)
         if (f.unknown_pressure[k] >= 0) f.p[k] = s.pressure_scale * x[at.begin[3] + f.unknown_pressure[k]];
+    take_foreseen(f, before, dt);
 }
 
 } // namespace plumb

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double held = 1e-6; // a freedom below which a grain is taken as held fast: mobility and rate would underflow
 
-/// Where the grains will be `ahead` [s] from now, with their present velocities; their columns of P. Grains that are
-/// new have no debts and are free.
+/// Where the grains will be `ahead` [s] from now, with their present velocities, or as far towards it as no wall is in
+/// the way; their columns of P. Grains that are new have no debts and are free.
 void set_places(GridCoupling& c, const GridFluid& fluid, const GrainSystem& system, double ahead) {
     const Grains& g = system.grains;
     c.places.x.resize(g.size());
@@ -28,9 +28,15 @@ void set_places(GridCoupling& c, const GridFluid& fluid, const GrainSystem& syst
     parallel_for(g.size(), [&](std::size_t k) {
         const auto id = static_cast<std::size_t>(g.id[k]);
         c.places.x[id] = g.x[k] + ahead * g.v[k];
+        for (const double share : {0.5, 0.25, 0.0})
+            if (ahead > 0.0 && !is_open(fluid, c.places.x[id])) c.places.x[id] = g.x[k] + (share * ahead) * g.v[k];
         c.places.volume[id] = sphere_volume(2.0 * g.radius[k]);
     });
     set_weights(c.weights, fluid, c.places.x);
+    BoundedPorosity found = porosity(fluid, c.weights, c.places.volume, c.least_porosity);
+    c.bounded += found.bounded;
+    c.eps = std::move(found.eps);
+    c.relief = std::move(found.relief);
 }
 
 bool is_dry(const GridCoupling& c, std::size_t id) {
@@ -61,7 +67,8 @@ void gather(const GridCoupling& c, const GridFluid& fluid, GatheredFluid& at, bo
     at.dry.assign(n, 0);
     at.load.assign(n, 0.0);
     if (at.wants_gradient) at.gradient.assign(n, Eigen::Matrix3d::Zero());
-    const CellFields fields = with_stress || at.wants_gradient ? cell_fields(fluid, at.wants_gradient) : CellFields{};
+    CellFields fields = with_stress || at.wants_gradient ? cell_fields(fluid, at.wants_gradient) : CellFields{};
+    if (!fields.stress.empty()) c.relief.gather(fields.stress);
     parallel_for(n, [&](std::size_t id) {
         at.dry[id] = is_dry(c, id) ? 1 : 0;
         if (at.dry[id] != 0) return;
@@ -92,14 +99,23 @@ Vec3 force_without_reaction(const FluidOnGrains& f, const LocalFluid& local, dou
     return force;
 }
 
-/// Drag on a grain in the coming step, as the fluid's equations foresee it: rate u' - known [N].
-struct LinearDrag {
-    double rate = 0.0; // [N s/m]
-    Vec3 known = Vec3::Zero();
-    Vec3 at(const Vec3& u) const { return rate * u - known; }
+bool shares_stress(const FluidOnGrains& f) {
+    return std::any_of(f.forces.begin(), f.forces.end(),
+                       [](const OtherForce& law) { return std::holds_alternative<PressureGradient>(law); });
+}
+
+/// A grain in the coming step, as the fluid's equations foresee it.
+struct ForeseenGrain {
+    double rate = 0.0;         // drag is rate u' - known - hands_on s' [N s/m]
+    Vec3 known = Vec3::Zero(); // [N]
+    double hands_on = 0.0;     // [m3]
+    double follows = 0.0;      // its way over the step is v + drift + follows (u' - u) + yields s'
+    double yields = 0.0;       // [m3 s/kg]
+    Vec3 drift = Vec3::Zero(); // [m/s]
+    Vec3 drag(const Vec3& u, const Vec3& stress) const { return rate * u - known - hands_on * stress; }
 };
 
-LinearDrag linear_drag(const FluidOnGrains& f, const GrainSystem& system, double freedom, std::size_t k, double dt) {
+ForeseenGrain foresee_one(const FluidOnGrains& f, const GrainSystem& system, double freedom, std::size_t k, double dt) {
     const Grains& g = system.grains;
     const auto id = static_cast<std::size_t>(g.id[k]);
     const double d = 2.0 * g.radius[k];
@@ -108,38 +124,52 @@ LinearDrag linear_drag(const FluidOnGrains& f, const GrainSystem& system, double
         return drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip);
     };
     const Vec3 slip = g.v[k] - local.u;
-    if (std::holds_alternative<ExplicitExchange>(f.exchange)) return {0.0, resistance(slip.norm()) * slip};
+    ForeseenGrain one;
+    if (std::holds_alternative<ExplicitExchange>(f.exchange)) {
+        one.known = resistance(slip.norm()) * slip;
+        return one;
+    }
     const double mobility = freedom * g.mobility[k];
     if (mobility < held * g.mobility[k] || mobility == 0.0) {
-        const double b = resistance(slip.norm());
-        return {b, b * g.v[k]};
+        one.rate = resistance(slip.norm());
+        one.known = one.rate * g.v[k];
+        return one;
     }
     Vec3 other = g.mass[k] * system.domain.gravity;
     for (const OtherForce& law : f.forces) other += force_on_grain(law, local, {d, g.v[k]}, system.domain.gravity);
     const Vec3 acceleration = mobility * other;
-    return std::visit(
-        [&](const auto& exchange) -> LinearDrag {
+    const double volume = shares_stress(f) ? sphere_volume(d) : 0.0; // on which the stress acts
+    const Vec3 without_stress = acceleration - (mobility * volume) * f.at_grains.stress[id];
+    std::visit(
+        [&](const auto& exchange) {
             const double rate = mid_step_rate(
                 exchange, [&](double speed) { return mobility * resistance(speed); }, slip, acceleration, dt);
             const StepWeights w = exchange(rate * dt);
             const double b = rate / mobility;
-            return {b * w.phi1, b * (w.phi1 * g.v[k] + (dt * w.phi2) * acceleration)};
+            one.rate = b * w.phi1;
+            one.known = b * (w.phi1 * g.v[k] + (dt * w.phi2) * without_stress);
+            one.follows = 1.0 - w.phi1;
+            one.hands_on = one.follows * volume;
+            one.yields = dt * w.phi2 * mobility * volume;
+            one.drift = dt * w.phi2 * without_stress - one.follows * slip;
         },
         f.exchange);
+    return one;
 }
 
 /// What all grains do to the fluid in the coming step, by id; debts are paid.
-std::vector<LinearDrag> foresee(const GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, double dt) {
+std::vector<ForeseenGrain> foresee(const GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system,
+                                   double dt) {
     const Grains& g = system.grains;
-    std::vector<LinearDrag> drag(g.size());
+    std::vector<ForeseenGrain> all(g.size());
     parallel_for(g.size(), [&](std::size_t k) {
         const auto id = static_cast<std::size_t>(g.id[k]);
-        if (f.at_grains.dry[id] == 0) drag[id] = linear_drag(f, system, c.freedom[id], k, dt);
+        if (f.at_grains.dry[id] == 0) all[id] = foresee_one(f, system, c.freedom[id], k, dt);
     });
-    return drag;
+    return all;
 }
 
-void push_fluid(const GridCoupling& c, GridFluid& fluid, const std::vector<LinearDrag>& drag, double dt) {
+void push_fluid(const GridCoupling& c, GridFluid& fluid, const std::vector<ForeseenGrain>& drag, double dt) {
     for (std::size_t q = 0; q < fluid.dimensions(); ++q) {
         const auto axis = static_cast<Eigen::Index>(q);
         fluid.drag[q].assign(fluid.u[q].size(), 0.0);
@@ -149,6 +179,27 @@ void push_fluid(const GridCoupling& c, GridFluid& fluid, const std::vector<Linea
                 fluid.drag[q][k] += weight * drag[id].rate;
                 fluid.push[q][k] += weight * (drag[id].known[axis] - c.owed[id][axis] / dt);
             });
+    }
+}
+
+/// What the grains' ways do to the fluid's equations.
+void make_room(const GridCoupling& c, GridFluid& fluid, const std::vector<ForeseenGrain>& all) {
+    std::vector<double> of_grains(all.size());
+    const auto sum = [&](auto&& of) {
+        for (std::size_t id = 0; id < all.size(); ++id) of_grains[id] = of(id, all[id]);
+        return per_volume(c.weights, c.relief, of_grains);
+    };
+    const std::vector<double>& volume = c.places.volume;
+    ForeseenGrains& room = fluid.foreseen;
+    room.follows = sum([&](std::size_t id, const ForeseenGrain& one) { return volume[id] * one.follows; });
+    room.hands_on = sum([](std::size_t /*id*/, const ForeseenGrain& one) { return one.hands_on; });
+    room.yields = sum([&](std::size_t id, const ForeseenGrain& one) { return volume[id] * one.yields; });
+    room.drift.assign(room.follows.size(), Vec3::Zero());
+    for (std::size_t q = 0; q < fluid.dimensions(); ++q) {
+        const auto axis = static_cast<Eigen::Index>(q);
+        const Field<double> drift =
+            sum([&](std::size_t id, const ForeseenGrain& one) { return volume[id] * one.drift[axis]; });
+        for (std::size_t k = 0; k < drift.size(); ++k) room.drift[k][axis] = drift[k];
     }
 }
 
@@ -162,13 +213,13 @@ std::vector<Vec3> velocities(const Grains& g) {
 struct Given {
     std::vector<Vec3> drag, without;
 };
-Given given_by_fluid(const FluidOnGrains& f, const GrainSystem& system, const std::vector<LinearDrag>& drag) {
+Given given_by_fluid(const FluidOnGrains& f, const GrainSystem& system, const std::vector<ForeseenGrain>& foreseen) {
     const Grains& g = system.grains;
     Given given{std::vector<Vec3>(g.size(), Vec3::Zero()), std::vector<Vec3>(g.size(), Vec3::Zero())};
     parallel_for(g.size(), [&](std::size_t k) {
         const auto id = static_cast<std::size_t>(g.id[k]);
         if (f.at_grains.dry[id] != 0) return;
-        given.drag[id] = drag[id].at(f.at_grains.u[id]);
+        given.drag[id] = foreseen[id].drag(f.at_grains.u[id], f.at_grains.stress[id]);
         given.without[id] = force_without_reaction(f, gathered_fluid(f, id), 2.0 * g.radius[k], system.domain.gravity);
     });
     return given;
@@ -232,13 +283,13 @@ std::vector<Vec3> pushes_besides_drag(const GridCoupling& c, const FluidOnGrains
 }
 
 /// Drag foreseen as a law of the gathered velocity, in which the grain's own is: with u' - past - R F for u', and the
-/// push F = besides - drag.
+/// push F = besides - drag. What is handed on of the stress is that of the step's start here.
 void see_through_own(GridCoupling& c, const std::vector<Vec3>& besides, const std::vector<Push>& pushes,
-                     const WakeStep& wake, std::int64_t step, std::vector<LinearDrag>& drag) {
+                     const WakeStep& wake, std::int64_t step, std::vector<ForeseenGrain>& foreseen) {
     constexpr double most = 0.9;
     const std::vector<double> response = fade_wakes(*c.self, pushes, wake);
-    for (std::size_t id = 0; id < drag.size(); ++id) {
-        LinearDrag& one = drag[id];
+    for (std::size_t id = 0; id < foreseen.size(); ++id) {
+        ForeseenGrain& one = foreseen[id];
         const double carried = one.rate * response[id];
         if (!(carried <= most))
             throw Diverged(step, wake.dt * static_cast<double>(step), "share of its slip that a grain's own push makes",
@@ -272,33 +323,30 @@ void set_own_slips(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& s
 void couple(GridCoupling& c, GridFluid& fluid, const GrainSystem& grains) {
     measure(c.weights, fluid);
     set_places(c, fluid, grains, 0.0);
-    BoundedPorosity found = porosity(fluid, c.weights, c.places.volume, c.least_porosity);
-    c.bounded += found.bounded;
-    c.eps = std::move(found.eps);
     if (c.two_way) fluid.eps = c.eps;
 }
 
 void advance_grid_coupled(GridCoupling& c, GridFluid& fluid, FluidOnGrains& f, GrainSystem& grains, double dt,
                           std::int64_t step) {
-    set_places(c, fluid, grains, 0.5 * dt);
-    BoundedPorosity found = porosity(fluid, c.weights, c.places.volume, c.least_porosity);
-    c.bounded += found.bounded;
-    c.eps = std::move(found.eps);
+    set_places(c, fluid, grains, dt);
     if (c.two_way) change_porosity(fluid, c.eps);
     const bool with_stress = needs_stress(f) || c.self;
     gather(c, fluid, f.at_grains, with_stress);
     const WakeStep wake{dt, two_steps_known(fluid)};
-    const std::vector<Vec3> besides = c.self ? pushes_besides_drag(c, f, dt) : std::vector<Vec3>{};
+    std::vector<Vec3> besides = c.self ? pushes_besides_drag(c, f, dt) : std::vector<Vec3>{};
+    const std::vector<Vec3> stress = f.at_grains.stress;
     if (c.self) turn_wakes(*c.self, dt);
     take_out_own(c, f.at_grains);
-    std::vector<LinearDrag> drag = foresee(c, f, grains, dt);
+    std::vector<ForeseenGrain> foreseen = foresee(c, f, grains, dt);
     std::vector<Push> pushes = screened_pushes(c, f, grains);
-    if (c.self) see_through_own(c, besides, pushes, wake, step, drag);
-    if (c.two_way) push_fluid(c, fluid, drag, dt);
+    for (std::size_t id = 0; id < besides.size(); ++id) besides[id] += foreseen[id].hands_on * stress[id];
+    if (c.self) see_through_own(c, besides, pushes, wake, step, foreseen);
+    if (c.two_way) push_fluid(c, fluid, foreseen, dt);
+    if (c.two_way) make_room(c, fluid, foreseen);
     advance_grid(fluid, dt, step);
 
     gather(c, fluid, f.at_grains, with_stress);
-    const Given given = given_by_fluid(f, grains, drag);
+    const Given given = given_by_fluid(f, grains, foreseen);
     if (c.self) push_own(c, f, pushes, given, wake);
     take_out_own(c, f.at_grains);
     const std::vector<Vec3> v_before = velocities(grains.grains);

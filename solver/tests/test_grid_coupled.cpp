@@ -149,6 +149,35 @@ TEST(GridCoupled, SlipRelaxesToOneVelocityWhateverTheStep) {
     }
 }
 
+TEST(GridCoupled, DenseFreeGrainsComeTogetherInLongSteps) {
+    // 50 relaxation times a step; half of the room; where the way or the stress of the step's start is taken this grows
+    for (const char* forces : {"[]", "[\"pressure_gradient\"]"})
+        for (const char* integrator : {"\"implicit_euler\"", "\"bdf2\""}) {
+            Simulation s =
+                simulation({{"step", "6.25e-2"},
+                            {"integrator", integrator},
+                            {"gravity", "[0.0, 0.0, 0.0]"},
+                            {"mean", ""},
+                            {"drag", "\"stokes\""},
+                            {"forces", forces},
+                            {"arrange", "{law = \"lattice\", kind = \"cubic\", lower = [0.0, 0.0, 0.0], upper = "
+                                        "[1.6e-3, 1.6e-3, 1.6e-3], spacing = 1e-4}"},
+                            {"velocity", "{law = \"uniform_random\", speed = 1e-7, seed = 3}"}});
+            advance(s, 12);
+            const std::vector<Vec3>& v = s.grains.grains.v;
+            Vec3 mean = Vec3::Zero(); // which nothing stops
+            for (const Vec3& one : v) mean += one / static_cast<double>(v.size());
+            double greatest = 0.0;
+            for (const Vec3& one : v) greatest = std::max(greatest, (one - mean).norm());
+            EXPECT_LT(greatest, 1e-9) << forces << " " << integrator;
+            // the room that the fluid was taken to have is the whole box less the grains
+            const GridFluid& f = *s.grid;
+            double taken = 0.0;
+            for (const double eps : f.eps_taken) taken += eps / static_cast<double>(f.eps_taken.size());
+            EXPECT_NEAR(taken, 1.0 - std::numbers::pi / 6.0, 1e-9);
+        }
+}
+
 TEST(GridCoupled, AGrainIsHeldOrFree) {
     // a grain on the floor of a channel that is blown upwards against the roof: contacts hold it, drag pulls it
     const std::string walls = R"(

@@ -111,6 +111,27 @@ TEST(GridPorosity, TakesTheGrainsVolumeFromTheFluidAndIsBounded) {
         }
 }
 
+TEST(GridPorosity, WhatIsGatheredGoesWhereTheVolumeWent) {
+    GridFluid f = box(12, 10, 8);
+    const std::vector<Vec3> x = random_places(200, {0.4, 0.4, 0.3}, {0.6, 0.6, 0.5});
+    const std::vector<double> volume(x.size(), 1e-3);
+    const GridWeights w = weights(f, GaussianKernel{}, 0.08, x);
+    const BoundedPorosity found = porosity(f, w, volume, 0.4);
+    const Field<double> solid = per_volume(w, found.relief, volume);
+    std::vector<Vec3> field(f.eps.size());
+    for (std::size_t k = 0; k < field.size(); ++k)
+        field[k] = Vec3(std::sin(0.1 * static_cast<double>(k)), 1.0, std::cos(0.7 * static_cast<double>(k)));
+    Vec3 in_cells = Vec3::Zero(), at_grains = Vec3::Zero();
+    for (std::size_t k = 0; k < field.size(); ++k) {
+        EXPECT_NEAR(solid[k], 1.0 - found.eps[k], 1e-12);
+        in_cells += w.cell_volume[k] * solid[k] * field[k];
+    }
+    found.relief.gather(field);
+    for (std::size_t j = 0; j < x.size(); ++j)
+        at_grains += volume[j] * w.cells.gathered(j, Vec3(Vec3::Zero()), [&](std::size_t k) { return field[k]; });
+    EXPECT_LT((in_cells - at_grains).norm(), 1e-12);
+}
+
 TEST(CellFields, AreExactForWhatIsLinear) {
     GridFluid f = box(6, 10, 8);
     Eigen::Matrix3d gradient;

@@ -52,7 +52,7 @@ class Column:
         """Greatest less least pressure of each step, Pa."""
         eps, u, found = self.porosity(self.start), np.zeros(self.cells), []
         for n in range(self.steps):
-            new = self.porosity(self.start + self.speed * (n + 0.5) * self.dt)
+            new = self.porosity(self.start + self.speed * (n + 1) * self.dt)
             face = 0.5 * (new + np.roll(new, 1))  # face k below cell k
             flow = -np.cumsum(np.roll(new - eps, 1)) * self.h / self.dt
             flow -= (flow / face).sum() / (1.0 / face).sum()  # no mean push: the sum of the velocities stays zero

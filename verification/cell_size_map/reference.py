@@ -44,7 +44,7 @@ def reference(quantity, scene, t):
 
 def jumps(column):
     """The greatest change of a cell's porosity in a step."""
-    places = [column.start] + [column.start + column.speed * (n + 0.5) * column.dt for n in range(column.steps)]
+    places = [column.start] + [column.start + column.speed * (n + 1) * column.dt for n in range(column.steps)]
     eps = np.array([column.porosity(x) for x in places])
     return float(np.abs(np.diff(eps, axis=0)).max())
 

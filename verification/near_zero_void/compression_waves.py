@@ -1,6 +1,7 @@
 """Waves of compression in a uniform bed of free grains on a grid, step by step (README.md, equations 1 to 6)."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,6 +10,7 @@ CELLS = 24     # of the sums, to each side
 LEFT = {
     "exponential": lambda z: math.exp(-z),
     "implicit": lambda z: 1.0 / (1.0 + z + 0.5 * z * z),
+    "explicit": lambda z: 1.0 - z + 0.5 * z * z,
 }
 
 
@@ -27,38 +29,69 @@ class Symbols:
 
         faces = x[:-1] + 0.5 * h
         self.velocity = float((weights(faces, 0.0) * np.cos(k * faces)).sum())
-        self.stress = float((weights(x, 0.0) * np.cos(k * x)).sum()) * math.cos(0.5 * k * h)
+        self.stress = float((weights(x, 0.0) * np.cos(k * x)).sum()) * math.cos(0.5 * k * h)  # cells, and a mean of two faces
         e = 1e-4 * h
         slope = (weights(x, e) - weights(x, -e)) / (2.0 * e)
         self.displacement = float((slope * np.sin(k * x)).sum()) * h / (2.0 * math.sin(0.5 * k * h))
+        self.difference = 2.0 * math.sin(0.5 * k * h) / h  # 1/m
 
 
 class LongWave:
     velocity = stress = displacement = 1.0
+    difference = 0.0
 
 
-def step_matrix(exchange, z, phi, ratio, symbols, gradient):
-    """What a step makes of (v, v before, u, dt times the stress on grains over rho_p, what is owed, the last way/dt)."""
-    fraction = phi / (1.0 - phi)
-    phi0 = LEFT[exchange](z)
-    q = 1.0 - phi0
-    phi1 = q / z
+class Bed(NamedTuple):
+    """A uniform bed: exchange law, dt over the relaxation time, solid fraction, density of grains over fluid's, whether the stress acts on grains,
+    and dt times the viscosity over the grains' density, m2."""
+    exchange: str
+    z: float
+    phi: float
+    ratio: float
+    gradient: bool = True
+    viscous: float = 0.0
+
+
+def step_matrix(bed, symbols):
+    """What a step makes of (v, v before, u, what is owed, the last way/dt, the way that was foreseen beyond v before)."""
+    z, phi, eps = bed.z, bed.phi, 1.0 - bed.phi
+    phi0 = LEFT[bed.exchange](z)
+    phi1 = (1.0 - phi0) / z
     phi2 = (1.0 - phi1) / z
-    v, v_before, u, stress, owed, way = np.eye(6)
-    new_u = -fraction * symbols.displacement * (way + 0.5 * (v - v_before))
-    seen = symbols.velocity * new_u
-    foreseen = q * (seen - v) - gradient * (1.0 - phi1) * stress
-    on_fluid = q * new_u + symbols.velocity * (owed - q * v - gradient * (1.0 - phi1) * stress)
-    new_stress = symbols.stress * ((new_u - u) / ratio + fraction * on_fluid)
-    push = gradient * new_stress
-    new_v = phi0 * v + q * seen + phi1 * push
-    new_owed = new_v - v - push - foreseen
-    return np.array([new_v, v, new_u, new_stress, new_owed, phi1 * v + (1.0 - phi1) * seen + phi2 * push])
+    v, v_before, u, owed, way, foreseen_before = np.eye(6)
+    G, H, S = symbols.velocity, symbols.stress, symbols.displacement
+    stressed = 1.0 if bed.gradient else 0.0
+    foresees = bed.exchange != "explicit"
+    rate = z * phi1 if foresees else 0.0                # drag F = rate u' - known - (1 - phi1) a'
+    known = rate * v if foresees else z * (v - G * u)
+    follows = 1.0 - phi1 if foresees else 0.0
+    hands_on, yields = stressed * follows, stressed * phi2 * foresees
+    drift = follows * (H * (G * u - v) - u)             # of the way that is foreseen, what is known
+    friction = yields * bed.viscous * symbols.difference**2
+    # momentum and volume for u' and s, dt times the stress on the fluid over rho_p; the pressure's part alone makes grains yield
+    left = np.array([[eps / bed.ratio + phi * rate, -(eps + phi * hands_on)], [eps + phi * (follows + friction), phi * yields]])
+    right = np.array([eps / bed.ratio * u + phi * G * (known - owed), -phi * (S * (way + v - v_before) - foreseen_before + drift)])
+    new_u, stress = np.linalg.solve(left, right)
+    foreseen = drift + (follows + friction) * new_u + yields * stress
+    push = stressed * H * stress                        # a'
+    seen = G * new_u
+    drag = (rate * seen - known if foresees else -known) - follows * push
+    new_v = phi0 * v + z * phi1 * seen + phi1 * push
+    return np.array([new_v, v, new_u, new_v - v - push - drag, phi1 * v + z * phi2 * seen + phi2 * push, foreseen])
 
 
-def factor(exchange, z, phi, ratio, symbols, gradient):
+def factor(bed, symbols):
     """The largest growth factor of a step."""
-    return float(np.abs(np.linalg.eigvals(step_matrix(exchange, z, phi, ratio, symbols, gradient))).max())
+    return float(np.abs(np.linalg.eigvals(step_matrix(bed, symbols))).max())
+
+
+def history(bed, symbols, steps):
+    """The grains' velocity over its start after 0 to `steps` steps; everything else starts at rest."""
+    matrix, state, found = step_matrix(bed, symbols), np.array([1.0, 0, 0, 0, 0, 0]), [1.0]
+    for _ in range(steps):
+        state = matrix @ state
+        found.append(state[0])
+    return np.array(found)
 
 
 def least(excess, low, high, points=60):

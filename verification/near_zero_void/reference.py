@@ -11,41 +11,45 @@ from scipy.optimize import brentq
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "reference_data")]
 
-from compression_waves import LongWave, Symbols, factor, least  # noqa: E402
+from compression_waves import Bed, LongWave, Symbols, factor, history, least  # noqa: E402
 from drag_laws.drag_laws import LAWS  # noqa: E402
 
-UNITS = {"late_growth": "1", "growth": "1", "boundary_share": "1", "superficial": "m/s", "force_share": "1", "mean_porosity": "1", "least_porosity": "1",
+UNITS = {"late_growth": "1", "waves": "1", "greatest": "1", "superficial": "m/s", "force_share": "1", "mean_porosity": "1", "least_porosity": "1",
          "flow_share": "1", "bounded": "1"}
-UNITS |= {f"z.{name}": "Pa s" for name in ("stable", "unstable", "boundary")}
 UNITS |= {f"added_mass.{name}": "kg/m3" for name in ("stable", "unstable", "boundary")}
 
 
-class Bed:
+STEPS = 12  # that are compared
+
+
+class Scene:
     """The scene's numbers."""
 
     def __init__(self, scene):
         self.scene, fluid, grain, coupling = scene, scene["fluid"], scene["grains"], scene["coupling"]
         self.h, self.length = fluid["spacing"], scene["domain"]["size"][0]
         self.d, self.rho, self.mu, self.dt = grain["diameter"], fluid["density"], fluid["viscosity"], scene["time"]["step"]
-        self.ratio = grain["density"] / self.rho
+        self.density = grain["density"]
         self.phi = math.pi / 6.0 * (self.d / grain["arrange"]["spacing"]) ** 3
-        self.z = self.dt * 18.0 * self.mu / (grain["density"] * self.d**2)
-        self.exchange, self.gradient = coupling["exchange"], float("pressure_gradient" in coupling["forces"])
+        self.z = self.dt * 18.0 * self.mu / (self.density * self.d**2)
+        self.exchange, self.gradient = coupling["exchange"], "pressure_gradient" in coupling["forces"]
         self.width = coupling["kernel_width"]
 
-    def factor(self, z=None, ratio=None):
-        """The largest growth factor of all waves along the box but the shortest, which the stress does not see."""
-        cells = round(self.length / self.h)
-        return max(factor(self.exchange, self.z if z is None else z, self.phi, ratio or self.ratio, s, self.gradient)
-                   for s in symbols(self.width, self.h, cells))
+    def bed(self, rho=None):
+        """In a fluid of another density too."""
+        return Bed(self.exchange, self.z, self.phi, self.density / (rho or self.rho), self.gradient, self.dt * self.mu / self.density)
 
-    def boundary_z(self):
-        return least(lambda z: self.factor(z) - 1.0 - 1e-9, 1e-3, 100.0)
+    @property
+    def waves(self):
+        """Symbols of all waves along the box but the shortest, which the stress does not see."""
+        return symbols(self.width, self.h, round(self.length / self.h))
+
+    def factor(self, rho):
+        return max(factor(self.bed(rho), wave) for wave in self.waves)
 
     def boundary_density(self):
-        """Of the fluid, kg/m3; z does not depend on it."""
-        grains = self.ratio * self.rho
-        return least(lambda rho: self.factor(ratio=grains / rho) - 1.0 - 1e-9, 0.02 * grains, 20.0 * grains)
+        """Of the fluid, kg/m3; dt/tau_p does not depend on it."""
+        return least(lambda rho: self.factor(rho) - 1.0 - 1e-9, 0.02 * self.density, 20.0 * self.density)
 
 
 @lru_cache(maxsize=None)
@@ -54,8 +58,8 @@ def symbols(width, h, cells):
 
 
 def superficial(scene):
-    """u_s of the law at the mean porosity: n f_d = -dp/dx, README, equation (7)."""
-    bed, gradient = Bed(scene), -scene["coupling"]["mean_pressure_gradient"][0]
+    """u_s of the law at the mean porosity: n f_d = -dp/dx, README, equation (8)."""
+    bed, gradient = Scene(scene), -scene["coupling"]["mean_pressure_gradient"][0]
     eps = 1.0 - bed.phi
     law, number = LAWS[scene["coupling"]["drag"].removesuffix("_missing_eps")], 6.0 * bed.phi / (math.pi * bed.d**3)
 
@@ -67,13 +71,11 @@ def superficial(scene):
 
 
 def reference(quantity, scene, t):
-    if quantity == "growth":
-        return Bed(scene).factor()
-    if quantity == "z.boundary":
-        bed = Bed(scene)
-        return bed.mu / bed.z * bed.boundary_z()
+    if quantity == "waves":
+        own = Scene(scene)
+        return np.array([history(own.bed(), wave, STEPS) for wave in own.waves]).ravel()
     if quantity == "added_mass.boundary":
-        return Bed(scene).boundary_density()
+        return Scene(scene).boundary_density()
     if quantity == "superficial":
         return superficial(scene)
     if quantity == "mean_porosity":
@@ -89,24 +91,33 @@ def grain_volume(scene):
     return math.prod(counts) * math.pi / 6.0 * scene["grains"]["diameter"] ** 3
 
 
-def waves(run):
-    """Root mean square of the part of the grains' velocities that depends on x, by step."""
+def along(run):
+    """The grains' velocities by step and place along x, m/s: means over y and z, less that of all."""
     v = run.series("grains")[1]
-    along = round(run.scene["domain"]["size"][0] / run.scene["fluid"]["spacing"])
-    mean = v.reshape(len(v), -1, along).mean(axis=1)
-    return np.sqrt(((mean - mean.mean(axis=1, keepdims=True)) ** 2).mean(axis=1))
+    mean = v.reshape(len(v), -1, round(run.scene["domain"]["size"][0] / run.scene["fluid"]["spacing"])).mean(axis=1)
+    return mean - mean.mean(axis=1, keepdims=True)
+
+
+def size(run):
+    """Root mean square of that, by step."""
+    return np.sqrt((along(run) ** 2).mean(axis=1))
 
 
 def measure(quantity, run):
     if quantity not in UNITS or "." in quantity:
         return NotImplemented
-    if quantity == "late_growth":  # of the last quarter over the second one; what has grown a thousandfold may have ended as disorder
-        size = waves(run)
-        quarter, greatest = len(size) // 4, float(size.max() / size[0])
-        return greatest if greatest > 1e3 else float(size[-quarter:].max() / size[quarter : 2 * quarter].max())
-    if quantity == "growth":  # a step's, over the last four
-        size = waves(run)
-        return float((size[-1] / size[-5]) ** 0.25)
+    if quantity == "late_growth":  # of the last quarter over the second one; what has grown a thousandfold may have ended as disorder, what is
+        found = size(run)          # below a thousandth is the solver's residual
+        quarter, greatest = len(found) // 4, float(found.max() / found[0])
+        if found[-quarter:].max() < 1e-3 * found[0]:
+            return float(found[-quarter:].max() / found[0])
+        return greatest if greatest > 1e3 else float(found[-quarter:].max() / found[quarter : 2 * quarter].max())
+    if quantity == "greatest":  # after the start, over the start
+        return float((size(run)[1:] / size(run)[0]).max())
+    if quantity == "waves":  # each over its start, one after the other
+        modes = np.fft.rfft(along(run), axis=1)[: STEPS + 1, 1 : 1 + len(Scene(run.scene).waves)]
+        found = (modes / modes[0]).T.ravel()
+        return np.arange(len(found)), np.real(found) + np.abs(np.imag(found))
     if quantity == "bounded":
         return float(run.info["coupling"]["bounded_porosities"])
     if quantity == "superficial":
@@ -122,46 +133,46 @@ def measure(quantity, run):
 
 
 def figures(runs):
-    return [("stability", stability_figure(runs), "Free grains: trials, the boundary of each box and kernel (crosses) and that of long waves (lines)."),
-            ("growth", growth_figure(runs), "Size of the waves of compression, step by step, and the largest factor of theory.")]
+    return [("waves", waves_figure(runs), "Size of the waves of compression, step by step: runs (points) and theory from each run's own start (lines)."),
+            ("stability", stability_figure(runs), "Left: largest factor of a step by theory, with what is foreseen, density ratio 2, long waves. Right: explicit exchange at a hundredth of the relaxation time, trials of each box (circles stable, squares unstable), its boundary by theory (crosses) and that of long waves at any short step (line).")]
+
+
+def waves_figure(runs):
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, 4.6), layout="constrained")
+    axes = figure.subplots()
+    for number, run in enumerate(run for run in runs if run.variant.startswith("waves") and not run.failure):
+        own, found = Scene(run.scene), size(run)
+        start = np.abs(np.fft.rfft(along(run), axis=1)[0, 1 : 1 + len(own.waves)])
+        theory = np.sqrt(sum((a * history(own.bed(), wave, len(found) - 1)) ** 2 for a, wave in zip(start, own.waves)) / (start**2).sum())
+        colour = f"C{number % 10}"
+        axes.semilogy(found / found[0], "o" if number < 10 else "s", color=colour, ms=3, mfc="none",
+                      label=f"{run.variant}: eps {1.0 - own.phi:.2g}, dt/tau_p {own.z:.3g}")
+        axes.semilogy(theory, color=colour, lw=1)
+    axes.set(xlabel="step", ylabel="velocity over its start [-]", ylim=(1e-6, 2.0))
+    axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    return figure
 
 
 def stability_figure(runs):
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.0, 4.8), layout="constrained")
-    axes = figure.subplots()
-    phis = np.linspace(0.15, 0.9, 60)
-    for ratio, gradient, style, label in ((2.0, 1.0, "C0-", "pressure_gradient, density ratio 2"), (1000.0, 1.0, "C0--", "the same, 1000"),
-                                          (2.0, 0.0, "C1-", "no pressure_gradient, any density")):
-        line = [least(lambda z, p=p: factor("exponential", z, p, ratio, LongWave, gradient) - 1.0 - 1e-9, 1e-3, 1e3) for p in phis]
-        axes.semilogy(1.0 - phis, [np.nan if z is None else z for z in line], style, lw=1, label=label)
+    figure = Figure(figsize=(10.0, 4.4), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    phis, zs = np.linspace(0.05, 0.95, 46), np.geomspace(1e-2, 1e3, 51)
+    factors = [[factor(Bed("exponential", z, phi, 2.0), LongWave) for phi in phis] for z in zs]
+    drawn = left.pcolormesh(1.0 - phis, zs, factors, vmin=0.0, vmax=1.0, cmap="viridis", shading="nearest", rasterized=True)
+    left.set(yscale="log", xlabel="eps [-]", ylabel="step over relaxation time, dt/tau_p [-]", title="exponential exchange, foreseen")
+    figure.colorbar(drawn, ax=left, label="largest factor of a step [-]")
+    right.plot(1.0 - phis, 0.5 * (1.0 - phis) / phis, "C0-", lw=1, label="long waves, any short step")
     for run in runs:
-        if getattr(run, "stable", None) is None or getattr(run, "unstable", None) is None or run.variant.startswith("added"):
+        if getattr(run, "stable", None) is None or getattr(run, "unstable", None) is None:
             continue
-        bed = Bed(run.scene)
-        colour = "C0" if bed.gradient else "C1"
+        own = Scene(run.scene)
         for value, mark in ((run.stable, "o"), (run.unstable, "s")):
-            axes.plot(1.0 - bed.phi, bed.z * value / bed.mu, mark, color=colour, mfc="none", ms=5)
-        axes.plot(1.0 - bed.phi, bed.boundary_z(), "k+", ms=9)
-    axes.plot([], [], "ko", mfc="none", label="highest stable (box of 16 cells)")
-    axes.plot([], [], "ks", mfc="none", label="lowest unstable")
-    axes.plot([], [], "k+", label="theory of the box and kernel")
-    axes.set(xlabel="eps [-]", ylabel="step over relaxation time, dt/tau_p [-]", ylim=(1e-2, 1e2), xlim=(0.1, 0.85))
-    axes.legend(fontsize="x-small", loc="upper left")
-    return figure
-
-
-def growth_figure(runs):
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
-    axes = figure.subplots()
-    for number, run in enumerate(run for run in runs if run.variant.startswith(("grows", "decays")) and not run.failure):
-        size = waves(run)
-        axes.semilogy(size / size[0], f"C{number}o", ms=3, label=run.variant)
-        steps = np.arange(len(size))
-        axes.semilogy(steps, size[-1] / size[0] * Bed(run.scene).factor() ** (steps - steps[-1]), f"C{number}-", lw=1)
-    axes.set(xlabel="step", ylabel="velocity over its start [-]", ylim=(1e-4, 1e12))
-    axes.legend(fontsize="x-small")
+            right.plot(1.0 - own.phi, value / own.density, mark, color="C0", mfc="none", ms=5)
+        right.plot(1.0 - own.phi, own.boundary_density() / own.density, "k+", ms=9)
+    right.set(xlabel="eps [-]", ylabel="density of the fluid over that of grains [-]", xlim=(0.2, 0.7), ylim=(0.0, 1.2), title="explicit exchange")
+    right.legend(fontsize="x-small", loc="upper left")
     return figure
