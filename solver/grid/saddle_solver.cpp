@@ -2,6 +2,7 @@
 
 #include "core/parallel.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -94,6 +95,27 @@ SaddleLayout layout(const SaddleSystem& s) {
     return at;
 }
 
+namespace {
+
+/// By cell, the mean over its faces of what a uniform velocity feels over the diagonal of A.
+VectorXd felt_by_smooth(const SaddleSystem& s) {
+    constexpr double least = 0.01; // rows that advection has brought near zero or below
+    VectorXd sum = VectorXd::Zero(s.yield.rows()), areas = sum;
+    for (std::size_t c = 0; c < s.dimensions; ++c) {
+        const RowMatrix& a = s.momentum[c].matrix;
+        const VectorXd ones = VectorXd::Ones(a.cols());
+        VectorXd share = (a * ones).cwiseQuotient(a.diagonal());
+        for (double& one : share) one = std::clamp(one, least, 1.0);
+        const RowMatrix area = s.divergence[c].cwiseAbs();
+        sum += area * share;
+        areas += area * ones;
+    }
+    for (Index k = 0; k < sum.size(); ++k) sum[k] = areas[k] > 0.0 ? sum[k] / areas[k] : 1.0;
+    return sum;
+}
+
+} // namespace
+
 ProjectionPreconditioner::ProjectionPreconditioner(const SaddleSystem& system)
     : system_(&system), layout_(layout(system)) {
     RowMatrix poisson;
@@ -106,14 +128,20 @@ ProjectionPreconditioner::ProjectionPreconditioner(const SaddleSystem& system)
         const RowMatrix part = system.divergence[c] * scaled;
         poisson = c == 0 ? part : RowMatrix(poisson + part);
     }
-    if (system.yield.rows() > 0) poisson += system.yield;
+    if (system.yield.rows() > 0) {
+        felt_ = felt_by_smooth(system);
+        VectorXd root = felt_;
+        for (double& one : root) one = std::sqrt(one);
+        poisson += RowMatrix(root.asDiagonal() * system.yield * root.asDiagonal());
+    }
     if (system.closed && poisson.rows() > 0) poisson.coeffRef(0, 0) *= 2.0; // the level of p is arbitrary: pinned here
     poisson_ = std::make_unique<Multigrid>(poisson, sweeps);
 }
 
 VectorXd ProjectionPreconditioner::schur_inverse(const VectorXd& r) {
     const VectorXd q = poisson_->solve(r, pressure_reduction, most_cycles);
-    VectorXd middle = system_->yield.rows() > 0 ? VectorXd(system_->yield * q) : VectorXd(VectorXd::Zero(r.size()));
+    VectorXd middle = VectorXd::Zero(r.size());
+    if (felt_.size() > 0) middle = felt_.cwiseProduct(system_->yield * felt_.cwiseProduct(q));
     for (std::size_t c = 0; c < system_->dimensions; ++c) {
         const VectorXd w = inverse_diagonal_[c].cwiseProduct(system_->gradient[c] * q);
         const VectorXd aw = system_->momentum[c].matrix * w;

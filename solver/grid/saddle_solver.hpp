@@ -38,9 +38,10 @@ SaddleLayout layout(const SaddleSystem& system);
 
 /// An approximate inverse: A by multigrid (without second upstream neighbours), and the Schur complement D A^-1 G + Y
 /// by
-///     S^-1 = L^-1 (D Q^-1 A Q^-1 G + Y) L^-1,    L = D Q^-1 G + Y,    Q = diag A
+///     S^-1 = L^-1 (D Q^-1 A Q^-1 G + R Y R) L^-1,    L = D Q^-1 G + R^1/2 Y R^1/2,    Q = diag A
 /// (least-squares commutator: Elman et al. 2006, SIAM J. Sci. Comput. 27, 1651), which is a projection step where A is
-/// diagonal and knows friction, drag and advection where it is not. Cheap to make, so each step makes its own.
+/// diagonal and knows friction, drag and advection where it is not. R is what of Q smooth velocities feel, the sums of
+/// A's rows over Q around each cell: with A = R Q the inverse is exact. Cheap to make, so each step makes its own.
 class ProjectionPreconditioner {
 public:
     explicit ProjectionPreconditioner(const SaddleSystem& system);
@@ -53,6 +54,7 @@ private:
     SaddleLayout layout_;
     std::array<std::unique_ptr<Multigrid>, 3> velocity_;
     std::array<Eigen::VectorXd, 3> inverse_diagonal_;
+    Eigen::VectorXd felt_; // R
     std::unique_ptr<Multigrid> poisson_;
 };
 
