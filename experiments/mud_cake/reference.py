@@ -180,7 +180,8 @@ def injected_share(run):
     """Grains that have entered over those due."""
     scene, due = run.scene, 0
     for one in injectors(scene):
-        due += one_points(one) * math.ceil((min(one["end"], scene["time"]["end"]) - one["start"]) / one["interval"] - 1e-6)
+        last = min(one["end"] - 1e-9, scene["time"]["end"] - scene["time"]["step"])  # grains enter where a step begins
+        due += one_points(one) * (math.floor((last - one["start"]) / one["interval"] + 1e-6) + 1)
     return len(Bed(run).x) / due
 
 

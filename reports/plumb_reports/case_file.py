@@ -170,7 +170,8 @@ def read_variants(table, sweep, folder):
         name = entry.name("name")
         entry.where = f"[[variant]] '{name}'"
         most = len(sweep.values) if sweep else 0
-        variant = Variant(name, {**preset_overrides(entry, folder), **entry.dictionary("set", {})}, entry.flag("sweep", True),
+        overrides = {**base_overrides(entry, variants), **preset_overrides(entry, folder), **entry.dictionary("set", {})}
+        variant = Variant(name, overrides, entry.flag("sweep", True),
                           entry.integer("values", None, lowest=1, highest=most))
         entry.finish()
         if variant.values and not variant.swept:
@@ -181,6 +182,17 @@ def read_variants(table, sweep, folder):
             raise entry.error("set", f"sets the sweep parameter {sweep.parameter}; say sweep = false as well")
         variants.append(variant)
     return tuple(variants) or (Variant("default"),)
+
+
+def base_overrides(entry, variants):
+    """Scene overrides of the earlier variant that a [[variant]] names as its `base`, {} if it names none."""
+    name = entry.text("base", None)
+    if name is None:
+        return {}
+    known = {variant.name: variant.overrides for variant in variants}
+    if name not in known:
+        raise entry.error("base", f"is {name!r}; variants before it are {', '.join(known) or 'none'}")
+    return known[name]
 
 
 def read_checks(table, reference, variants, sweep):

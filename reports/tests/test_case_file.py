@@ -55,6 +55,15 @@ def test_variants_and_campaign(case):
     assert read.check("terminal").variants == ("a", "b")
 
 
+def test_a_base_gives_its_overrides(case):
+    case.append("case.toml", '[[variant]]\nname = "a"\nset = {"fake.tau" = 0.1, "fake.drift" = 0.01}\n'
+                '[[variant]]\nname = "b"\nbase = "a"\nset = {"fake.drift" = 0.02}\n')
+    assert read_case(case.folder).variant("b").overrides == {"fake.tau": 0.1, "fake.drift": 0.02}
+    case.edit("case.toml", 'base = "a"', 'base = "c"')
+    with pytest.raises(CaseError, match="'base' is 'c'; variants before it are a"):
+        read_case(case.folder)
+
+
 def test_a_variant_that_only_another_tier_judges_is_not_run(case):
     read = read_case(case.folder)
     late = Variant("late", swept=False)
