@@ -53,7 +53,7 @@ double carried_out(const GridFluid& f, std::size_t cell, const Velocity* u, cons
 
 } // namespace
 
-RowMatrix yield_rows(const GridFluid& f) {
+RowMatrix yield_rows(const GridFluid& f, const Velocity& share) {
     if (f.foreseen.yields.empty()) return {};
     const Block cells = f.grid.cells();
     std::vector<MatrixRows> parts((cells.size() + parallel_chunk - 1) / parallel_chunk);
@@ -63,8 +63,8 @@ RowMatrix yield_rows(const GridFluid& f) {
             Entries row;
             row.put(f.unknown_pressure[cell], 0.0);
             out_of(f, cells.place(cell), [&](const Gap& gap, double area) {
-                const double per_pressure =
-                    0.5 * (f.foreseen.yields[gap.below] + f.foreseen.yields[gap.above]) * std::abs(area) / gap.distance;
+                const double yields = 0.5 * (f.foreseen.yields[gap.below] + f.foreseen.yields[gap.above]);
+                const double per_pressure = share[gap.axis][gap.face] * yields * std::abs(area) / gap.distance;
                 row.put(f.unknown_pressure[cell], per_pressure);
                 row.put(f.unknown_pressure[gap.below == cell ? gap.above : gap.below], -per_pressure);
             });

@@ -113,8 +113,9 @@ Field<double> friction_on_faces(const GridFluid& fluid, std::size_t c);
 /// div((eps + share) u) over the cells by unknown velocities of component c [m2]; `share` by cell, or empty.
 RowMatrix divergence_rows(const GridFluid& fluid, std::size_t c, const Field<double>& share);
 
-/// -div(yields grad p) over the cells by unknown pressures [m4 s/kg]; no rows where nothing yields.
-RowMatrix yield_rows(const GridFluid& fluid);
+/// -div(share yields grad p) over the cells by unknown pressures [m4 s/kg], `share` by face; no rows where nothing
+/// yields.
+RowMatrix yield_rows(const GridFluid& fluid, const Velocity& share);
 
 /// What grains are foreseen to carry out of the cells beyond what follows the velocity and the pressure at the step's
 /// end [m3/s]; the present velocity is that of the step's start.

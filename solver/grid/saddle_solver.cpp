@@ -50,9 +50,29 @@ VectorXd product(const SaddleSystem& s, const SaddleLayout& at, const VectorXd& 
         y.segment(at.begin[c], u.size()) = s.momentum[c].matrix * u - s.gradient[c] * p;
         outflow += s.divergence[c] * u;
     }
-    if (s.yield.rows() > 0) outflow += s.yield * p;
+    if (s.yield[0].rows() > 0) outflow += s.yield[0] * p;
     y.segment(at.begin[3], p.size()) = outflow;
     return y;
+}
+
+} // namespace
+
+namespace {
+
+/// Y times `scale`, weighed by the powers of what smooth velocities feel of the diagonal.
+void set_yield(const GridFluid& f, double scale, SaddleSystem& s) {
+    constexpr double least = 0.01; // of rows that advection has brought near zero or below
+    Velocity share;
+    for (std::size_t c = 0; c < s.dimensions; ++c) share[c].assign(f.u[c].size(), scale);
+    for (std::size_t power = 0; power < s.yield.size(); ++power) {
+        s.yield[power] = yield_rows(f, share);
+        for (std::size_t c = 0; c < s.dimensions && power + 1 < s.yield.size(); ++c) {
+            const RowMatrix& a = s.momentum[c].matrix;
+            const VectorXd felt = (a * VectorXd::Ones(a.cols())).cwiseQuotient(a.diagonal());
+            for (std::size_t k = 0; k < share[c].size(); ++k)
+                if (f.unknown[c][k] >= 0) share[c][k] *= std::clamp(felt[f.unknown[c][k]], least, 1.0);
+        }
+    }
 }
 
 } // namespace
@@ -78,8 +98,7 @@ SaddleSystem saddle_system(const GridFluid& f, const Velocity& carrier, double n
         else
             s.gradient[c] = divergence_rows(f, c, f.foreseen.hands_on).transpose(), s.gradient[c] *= s.pressure_scale;
     }
-    s.yield = yield_rows(f);
-    s.yield *= now * s.pressure_scale * s.pressure_scale;
+    if (!f.foreseen.yields.empty()) set_yield(f, now * s.pressure_scale * s.pressure_scale, s);
     s.known_divergence = s.pressure_scale * known_divergence(f);
     return s;
 }
@@ -95,27 +114,6 @@ SaddleLayout layout(const SaddleSystem& s) {
     return at;
 }
 
-namespace {
-
-/// By cell, the mean over its faces of what a uniform velocity feels over the diagonal of A.
-VectorXd felt_by_smooth(const SaddleSystem& s) {
-    constexpr double least = 0.01; // rows that advection has brought near zero or below
-    VectorXd sum = VectorXd::Zero(s.yield.rows()), areas = sum;
-    for (std::size_t c = 0; c < s.dimensions; ++c) {
-        const RowMatrix& a = s.momentum[c].matrix;
-        const VectorXd ones = VectorXd::Ones(a.cols());
-        VectorXd share = (a * ones).cwiseQuotient(a.diagonal());
-        for (double& one : share) one = std::clamp(one, least, 1.0);
-        const RowMatrix area = s.divergence[c].cwiseAbs();
-        sum += area * share;
-        areas += area * ones;
-    }
-    for (Index k = 0; k < sum.size(); ++k) sum[k] = areas[k] > 0.0 ? sum[k] / areas[k] : 1.0;
-    return sum;
-}
-
-} // namespace
-
 ProjectionPreconditioner::ProjectionPreconditioner(const SaddleSystem& system)
     : system_(&system), layout_(layout(system)) {
     RowMatrix poisson;
@@ -128,12 +126,7 @@ ProjectionPreconditioner::ProjectionPreconditioner(const SaddleSystem& system)
         const RowMatrix part = system.divergence[c] * scaled;
         poisson = c == 0 ? part : RowMatrix(poisson + part);
     }
-    if (system.yield.rows() > 0) {
-        felt_ = felt_by_smooth(system);
-        VectorXd root = felt_;
-        for (double& one : root) one = std::sqrt(one);
-        poisson += RowMatrix(root.asDiagonal() * system.yield * root.asDiagonal());
-    }
+    if (system.yield[1].rows() > 0) poisson += system.yield[1];
     if (system.closed && poisson.rows() > 0) poisson.coeffRef(0, 0) *= 2.0; // the level of p is arbitrary: pinned here
     poisson_ = std::make_unique<Multigrid>(poisson, sweeps);
 }
@@ -141,7 +134,7 @@ ProjectionPreconditioner::ProjectionPreconditioner(const SaddleSystem& system)
 VectorXd ProjectionPreconditioner::schur_inverse(const VectorXd& r) {
     const VectorXd q = poisson_->solve(r, pressure_reduction, most_cycles);
     VectorXd middle = VectorXd::Zero(r.size());
-    if (felt_.size() > 0) middle = felt_.cwiseProduct(system_->yield * felt_.cwiseProduct(q));
+    if (system_->yield[2].rows() > 0) middle = system_->yield[2] * q;
     for (std::size_t c = 0; c < system_->dimensions; ++c) {
         const VectorXd w = inverse_diagonal_[c].cwiseProduct(system_->gradient[c] * q);
         const VectorXd aw = system_->momentum[c].matrix * w;

@@ -17,8 +17,8 @@ namespace plumb {
 struct SaddleSystem {
     std::array<MomentumRows, 3> momentum;
     std::array<RowMatrix, 3> divergence, gradient; // D and G, by component
-    RowMatrix yield;                               // Y; without rows where it is 0
-    Eigen::VectorXd known_divergence;              // weighed like the rows of mass
+    std::array<RowMatrix, 3> yield;   // Y, its faces weighed by R^0, R^1 and R^2; without rows where it is 0
+    Eigen::VectorXd known_divergence; // weighed like the rows of mass
     std::size_t dimensions = 2;
     double pressure_scale = 1.0; // [kg/(m2 s)]
     bool closed = false;         // no outflow: the mean pressure is arbitrary
@@ -38,10 +38,11 @@ SaddleLayout layout(const SaddleSystem& system);
 
 /// An approximate inverse: A by multigrid (without second upstream neighbours), and the Schur complement D A^-1 G + Y
 /// by
-///     S^-1 = L^-1 (D Q^-1 A Q^-1 G + R Y R) L^-1,    L = D Q^-1 G + R^1/2 Y R^1/2,    Q = diag A
+///     S^-1 = L^-1 (D Q^-1 A Q^-1 G + Y(R^2)) L^-1,    L = D Q^-1 G + Y(R),    Q = diag A
 /// (least-squares commutator: Elman et al. 2006, SIAM J. Sci. Comput. 27, 1651), which is a projection step where A is
 /// diagonal and knows friction, drag and advection where it is not. R is what of Q smooth velocities feel, the sums of
-/// A's rows over Q around each cell: with A = R Q the inverse is exact. Cheap to make, so each step makes its own.
+/// A's rows over Q, by which the faces of Y are weighed: with A = R Q, R uniform, the inverse is exact. Cheap to make,
+/// so each step makes its own.
 class ProjectionPreconditioner {
 public:
     explicit ProjectionPreconditioner(const SaddleSystem& system);
@@ -54,7 +55,6 @@ private:
     SaddleLayout layout_;
     std::array<std::unique_ptr<Multigrid>, 3> velocity_;
     std::array<Eigen::VectorXd, 3> inverse_diagonal_;
-    Eigen::VectorXd felt_; // R
     std::unique_ptr<Multigrid> poisson_;
 };
 
