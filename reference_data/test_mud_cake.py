@@ -259,3 +259,16 @@ def test_pore_filling_counts_the_centres_between_the_ends():
     row = mud_cake.row_of(1.0, 16, 8e-4)
     y = mud_cake.lowest(row) + np.array([-1e-6, 1e-6, 0.01, row.bed_height - 1e-6, row.bed_height + 1e-6])
     assert mud_cake.pore_filling(y, row) == pytest.approx(mud_cake.filling(3, row))
+
+
+def test_filled_height_is_that_of_the_bed_alone():
+    """Twenty millimetres of grains at one filling, and stray ones up to the plug's edge."""
+    array = clean_channel.Array(16, 0.046, 0.05)
+    d, rng = 8e-4, np.random.default_rng(3)
+    open_area = np.array([array.open_area(y, y + 1e-4, 3) for y in np.arange(0.21, 0.23, 1e-4)])
+    count = np.round(0.3 * open_area * clean_channel.DEPTH / (math.pi * d**3 / 6.0) * 50.0).astype(int)
+    bed = np.concatenate([y + 1e-4 * rng.random(n) for y, n in zip(np.arange(0.21, 0.23, 1e-4), count)])
+    stray = 0.235 + 0.015 * rng.random(len(bed) // 20)
+    assert mud_cake.filled_height(np.concatenate([bed, stray]), d, array) == pytest.approx(0.02, abs=1e-3)
+    assert mud_cake.bed_height(np.concatenate([bed, stray]), d) > 0.03
+    assert mud_cake.filled_height(np.empty(0), d, array) == 0.0

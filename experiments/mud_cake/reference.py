@@ -14,7 +14,7 @@ from theory.bed_resistance import bed_drop  # noqa: E402
 from theory.clean_channel import DEPTH, MEAN, Array  # noqa: E402
 
 UNITS = {
-    "pressure": "1", "rise": "1", "rise_over_published": "1", "bed_height": "m", "bed_start": "m", "bed_porosity": "1", "resting_share": "1",
+    "pressure": "1", "rise": "1", "rise_over_published": "1", "bed_height": "m", "filled_height": "m", "bed_start": "m", "bed_porosity": "1", "resting_share": "1",
     "flow_change": "1", "volume_balance": "1", "trends_broken": "1", "series_trends_broken": "1", "pressure_change": "1", "height_change": "1",
     "clean_pressure": "Pa", "injected_share": "1", "pore_filling": "1", "rows_missed_pressure": "1", "rows_missed_rise": "1", "rows_missed_height": "1",
 }
@@ -71,7 +71,7 @@ def reference(quantity, scene, t):
         return published.pressure
     if quantity == "rise":
         return published.pressure - published.clean
-    if quantity == "bed_height":
+    if quantity in ("bed_height", "filled_height"):
         return published.bed_height
     if quantity == "bed_start":
         texts = clean_channel.table("mudcake_ddpm_dem/text_values.csv")
@@ -124,6 +124,10 @@ class Bed:
     @property
     def height(self):
         return mud_cake.bed_height(self.y, self.d)
+
+    @property
+    def filled_height(self):
+        return mud_cake.filled_height(self.y, self.d, self.array)
 
     @property
     def porosity(self):
@@ -207,7 +211,7 @@ def measure(quantity, run):
     simple = {
         "pressure": final_pressure, "clean_pressure": clean_pressure, "flow_change": flow_change, "volume_balance": volume_balance,
         "rise": lambda r: final_pressure(r) - clean_pressure(r) / reference_pressure(r),
-        "bed_height": lambda r: Bed(r).height, "bed_start": lambda r: Bed(r).start, "bed_porosity": lambda r: Bed(r).porosity,
+        "bed_height": lambda r: Bed(r).height, "filled_height": lambda r: Bed(r).filled_height, "bed_start": lambda r: Bed(r).start, "bed_porosity": lambda r: Bed(r).porosity,
         "resting_share": lambda r: mud_cake.resting_share(Bed(r).x[:, 1], Bed(r).v), "injected_share": injected_share, "pore_filling": lambda r: mud_cake.pore_filling(Bed(r).x[:, 1], row(r.scene)),
         "trends_broken": lambda r: broken(mud_cake.trends(all_rows(r, lambda one: (final_pressure(one), Bed(one).height)))),
         "series_trends_broken": lambda r: broken(mud_cake.series_trends(all_rows(r, pressures))),
@@ -238,7 +242,7 @@ def table(runs):
     lines = []
     for run in finished(runs):
         bed, published = Bed(run), row(run.scene)
-        values = [f"{1e3 * mud_cake.bed_height(bed.y, bed.d, ends):.1f}" for ends in mud_cake.READINGS.values()]
+        values = [f"{1e3 * bed.filled_height:.1f}"] + [f"{1e3 * mud_cake.bed_height(bed.y, bed.d, ends):.1f}" for ends in mud_cake.READINGS.values()]
         law = run.scene["coupling"]["drag"]
         clean, p = clean_pressure(run), series(run)[1][-1]
         try:
@@ -249,7 +253,7 @@ def table(runs):
                       f"{1e3 * published.bed_height:.1f}" if published else "", filling(run), f"{1e3 * bed.start:.1f}", f"{bed.porosity:.3f}",
                       f"{len(bed.y)} of {mud_cake.arrived(bed.x[:, 1])} of {len(bed.x)}", f"{1e-3 * clean:.2f}", f"{1e-3 * (p - clean):.2f}",
                       f"{1e-3 * bed.expected_rise(law, flow(run.scene)):.2f}"])
-    readings = [f"h_b, {name} (mm)" for name in mud_cake.READINGS]
+    readings = [f"h_b, {name} (mm)" for name in ("filled", *mud_cake.READINGS)]
     columns = ["variant", "P", "Table 7", *readings, "Table 7 (mm)", "filling, needed", "start (mm)", "porosity", "at rest, arrived, injected", "clean (kPa)",
                "rise (kPa)", "rise by the law (kPa)"]
     return {"columns": columns, "rows": lines, "caption": CAPTION + fits(runs)}
@@ -261,8 +265,8 @@ def filling(run):
     return f"{mud_cake.pore_filling(Bed(run).x[:, 1], one):.2f}, {mud_cake.needed_filling(one):.2f}" if one else ""
 
 
-CAPTION = ("Every run at its end. P: greatest pressure over that of the clean channel with 12 cylinders a row and the same cells; h_b: four readings of the heights of "
-           "the grains at rest, each plus one diameter, the first is judged; filling: share of the room between the cylinders that grains fill where the published bed would be, and what that bed would need; start: the 2nd percentile less a radius; porosity: of the room between the cylinders. Rise by the law: the "
+CAPTION = ("Every run at its end. P: greatest pressure over that of the clean channel with 12 cylinders a row and the same cells; h_b: where the pores are filled, and four readings of the heights of "
+           "the grains at rest, each plus one diameter, the first of those is judged; filling: share of the room between the cylinders that grains fill where the published bed would be, and what that bed would need; start: the 2nd percentile less a radius; porosity: of the room between the cylinders. Rise by the law: the "
            "drag law's pressure gradient for as many grains over that height. ")
 
 

@@ -1,7 +1,8 @@
 """Measures of a bed of grains in the porous channel, the paper's table and claims, and its correlation.
 
 At rest is a grain slower than a twentieth of the channel's mean velocity. Bed height: the paper does not say how it was
-measured; here the distance between the 2nd and the 98th percentile of the heights of grains at rest, plus one diameter.
+measured; here the distance between the 2nd and the 98th percentile of the heights of grains at rest, plus one diameter. Grains that
+are caught in corners far above the bed count in that; the height over which the pores are filled knows nothing of them.
 """
 
 import math
@@ -31,6 +32,23 @@ def bed_height(y, d, percentiles=PERCENTILES):
         return 0.0
     low, high = np.percentile(y, percentiles)
     return float(high - low + d)
+
+
+def filled_height(y, d, array, step=2.5e-4):
+    """Height, m, over which grains of diameter d at rest at the heights y [n] fill at least half as much of the room between
+    the cylinders as where they fill most of it; both of running means over two rows. From the lowest such place up to the
+    first two rows without one; 0 without a grain."""
+    if len(y) == 0:
+        return 0.0
+    edges = np.arange(clean_channel.BOTTOM, clean_channel.TOP + 0.1, step)
+    window = np.ones(max(1, round(2.0 * array.row_distance / step)))
+    room = np.array([array.open_area(low, high, 3) for low, high in zip(edges, edges[1:])]) * DEPTH
+    solid = np.histogram(y, edges)[0] * math.pi * d**3 / 6.0
+    filling = np.convolve(solid, window, "same") / np.convolve(room, window, "same")
+    filled = np.flatnonzero(filling >= 0.5 * filling.max())
+    gaps = np.flatnonzero(np.diff(filled) > len(window))
+    last = filled[gaps[0]] if len(gaps) else filled[-1]
+    return float((last + 1 - filled[0]) * step)
 
 
 def bed_start(y, d):
