@@ -16,7 +16,7 @@ def plane(run, lower, upper):
 
 
 def fields_figure(run, lower=0.145, upper=0.3):
-    """Speed and pressure over the plane, with the grains at rest as dots in the latter."""
+    """Speed and pressure over the plane, cylinders left white."""
     from matplotlib.figure import Figure
 
     x, y, speed, p = plane(run, lower, upper)

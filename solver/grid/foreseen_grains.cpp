@@ -89,6 +89,7 @@ void take_foreseen(GridFluid& f, const Velocity& before, double dt) {
     parallel_for(f.unknown_pressure.size(), [&](std::size_t cell) {
         if (f.unknown_pressure[cell] < 0) return; // grains leave, fluid gains
         const double volume = f.open.cell[cell] * f.grid.cell_volume(f.grid.cells().place(cell));
+        if (volume == 0.0) return; // a corner too small to be measured
         f.eps_taken[cell] += dt * carried_out(f, cell, &f.u, before, &f.p) / volume;
     });
 }

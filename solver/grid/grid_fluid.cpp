@@ -91,12 +91,13 @@ double open_area(const GridFluid& f, std::size_t c, const Place& face) {
     return face_eps(f, c, face) * f.open.face[c][f.grid.faces(c).at(face)] * f.grid.face_area(c, face);
 }
 
-RowMatrix divergence_rows(const GridFluid& f, std::size_t c, const Field<double>& share) {
+RowMatrix divergence_rows(const GridFluid& f, std::size_t c, const Field<double>& share, bool on_sides) {
     const Block cells = f.grid.cells(), faces = f.grid.faces(c);
     RowMatrix rows(f.unknown_pressures, f.unknowns[c]);
     rows.reserve(2 * static_cast<Eigen::Index>(f.unknown_pressures));
     const auto area_of = [&](const Place& p) {
-        if (share.empty()) return open_area(f, c, p);
+        const bool side = f.grid.axis[c].cell_below(p[c]) < 0 || f.grid.axis[c].cell_above(p[c]) < 0;
+        if (share.empty() || (side && !on_sides)) return open_area(f, c, p);
         return (face_eps(f, c, p) + face_mean(f, share, c, p)) * f.open.face[c][faces.at(p)] * f.grid.face_area(c, p);
     };
     for_each_place(cells, [&](const Place& p, std::size_t k) {

@@ -110,8 +110,9 @@ MomentumRows momentum_rows(const GridFluid& fluid, std::size_t c, const Velocity
 /// [N].
 Field<double> friction_on_faces(const GridFluid& fluid, std::size_t c);
 
-/// div((eps + share) u) over the cells by unknown velocities of component c [m2]; `share` by cell, or empty.
-RowMatrix divergence_rows(const GridFluid& fluid, std::size_t c, const Field<double>& share);
+/// div((eps + share) u) over the cells by unknown velocities of component c [m2]; `share` by cell, or empty. On sides
+/// of the box it counts only where `on_sides`: stress acts there, but what is foreseen of grains stays in the box.
+RowMatrix divergence_rows(const GridFluid& fluid, std::size_t c, const Field<double>& share, bool on_sides);
 
 /// -div(share yields grad p) over the cells by unknown pressures [m4 s/kg], `share` by face; no rows where nothing
 /// yields.

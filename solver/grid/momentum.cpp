@@ -3,7 +3,8 @@
 // Friction is the derivative of the dissipation by the velocities: every gradient that the grid knows, of the mean
 // velocities over open faces, squared, times the open volume it stands for. Across a cut cell it is Gauss' theorem of
 // its polygon with the wall at rest; beside a wall that ends a row of faces, the velocity over half the open width. So
-// the matrix is symmetric, and creeping flow the one of least dissipation among those that keep the volume.
+// the matrix is symmetric, and creeping flow the one of least dissipation among those that keep the volume. Where
+// grains hand on stress, each row of friction is times its own share of it.
 #include "core/parallel.hpp"
 #include "grid/grid_fluid.hpp"
 #include "grid/matrix_rows.hpp"

@@ -86,7 +86,7 @@ SaddleSystem saddle_system(const GridFluid& f, const Velocity& carrier, double n
     double momentum = 0.0, mass = 0.0;
     for (std::size_t c = 0; c < s.dimensions; ++c) {
         s.momentum[c] = momentum_rows(f, c, carrier, now / dt);
-        s.divergence[c] = divergence_rows(f, c, following);
+        s.divergence[c] = divergence_rows(f, c, following, false);
         momentum += s.momentum[c].matrix.diagonal().squaredNorm();
         mass += s.divergence[c].squaredNorm();
     }
@@ -96,7 +96,8 @@ SaddleSystem saddle_system(const GridFluid& f, const Velocity& carrier, double n
         if (following.empty())
             s.gradient[c] = s.divergence[c].transpose();
         else
-            s.gradient[c] = divergence_rows(f, c, f.foreseen.hands_on).transpose(), s.gradient[c] *= s.pressure_scale;
+            s.gradient[c] = divergence_rows(f, c, f.foreseen.hands_on, true).transpose(),
+            s.gradient[c] *= s.pressure_scale;
     }
     if (!f.foreseen.yields.empty()) set_yield(f, now * s.pressure_scale * s.pressure_scale, s);
     s.known_divergence = s.pressure_scale * known_divergence(f);

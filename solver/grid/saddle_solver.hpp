@@ -1,9 +1,9 @@
 // Velocity and pressure of one step together,
 //     A u - G p = f,    D u + Y p = s,
-// with A the momentum rows, D the divergence, G its transpose and Y = 0 but where grains are foreseen (G and D then
-// have the stress and the volume of grains in them, Y what grains give way to a gradient): Krylov's method with one
-// projection step as its preconditioner, so that nothing of the splitting is left in the answer (Griffith 2009, J.
-// Comput. Phys. 228, 7565).
+// with A the momentum rows, D the divergence, G its transpose and Y = 0 but where grains are foreseen: G and D then
+// have the stress that they hand on and the volume that follows, Y what grains give way to a gradient. Krylov's method
+// with one projection step as its preconditioner, so that nothing of the splitting is left in the answer (Griffith
+// 2009, J. Comput. Phys. 228, 7565).
 #pragma once
 
 #include "grid/multigrid.hpp"

@@ -13,12 +13,13 @@ namespace {
 
 constexpr double held = 1e-6; // a freedom below which a grain is taken as held fast: mobility and rate would underflow
 
-/// Where the grains will be `ahead` [s] from now, with their present velocities, or as far towards it as no wall is in
-/// the way; their columns of P. Grains that are new have no debts and are free.
+/// Where the grains will be `ahead` [s] from now, with their present velocities, or where this ends in a wall, a half,
+/// a quarter or nothing of the way towards it; their columns of P. Grains that are new have no debts and are free.
 void set_places(GridCoupling& c, const GridFluid& fluid, const GrainSystem& system, double ahead) {
     const Grains& g = system.grains;
     c.places.x.resize(g.size());
     c.places.volume.resize(g.size());
+    c.reached.assign(g.size(), 1.0);
     c.owed.resize(g.size(), Vec3::Zero());
     c.freedom.resize(g.size(), 1.0);
     if (c.self) {
@@ -29,7 +30,10 @@ void set_places(GridCoupling& c, const GridFluid& fluid, const GrainSystem& syst
         const auto id = static_cast<std::size_t>(g.id[k]);
         c.places.x[id] = g.x[k] + ahead * g.v[k];
         for (const double share : {0.5, 0.25, 0.0})
-            if (ahead > 0.0 && !is_open(fluid, c.places.x[id])) c.places.x[id] = g.x[k] + (share * ahead) * g.v[k];
+            if (ahead > 0.0 && !is_open(fluid, c.places.x[id])) {
+                c.places.x[id] = g.x[k] + (share * ahead) * g.v[k];
+                c.reached[id] = share;
+            }
         c.places.volume[id] = sphere_volume(2.0 * g.radius[k]);
     });
     set_weights(c.weights, fluid, c.places.x);
@@ -68,7 +72,7 @@ void gather(const GridCoupling& c, const GridFluid& fluid, GatheredFluid& at, bo
     at.load.assign(n, 0.0);
     if (at.wants_gradient) at.gradient.assign(n, Eigen::Matrix3d::Zero());
     CellFields fields = with_stress || at.wants_gradient ? cell_fields(fluid, at.wants_gradient) : CellFields{};
-    if (!fields.stress.empty()) c.relief.gather(fields.stress);
+    if (!fields.stress.empty() && c.two_way) c.relief.gather(fields.stress);
     parallel_for(n, [&](std::size_t id) {
         at.dry[id] = is_dry(c, id) ? 1 : 0;
         if (at.dry[id] != 0) return;
@@ -109,7 +113,7 @@ struct ForeseenGrain {
     double rate = 0.0;         // drag is rate u' - known - hands_on s' [N s/m]
     Vec3 known = Vec3::Zero(); // [N]
     double hands_on = 0.0;     // [m3]
-    double follows = 0.0;      // its way over the step is v + drift + follows (u' - u) + yields s'
+    double follows = 0.0;      // its way over the step's length is v + drift + follows (u' - u) + yields s'
     double yields = 0.0;       // [m3 s/kg]
     Vec3 drift = Vec3::Zero(); // [m/s]
     Vec3 drag(const Vec3& u, const Vec3& stress) const { return rate * u - known - hands_on * stress; }
@@ -157,14 +161,16 @@ ForeseenGrain foresee_one(const FluidOnGrains& f, const GrainSystem& system, dou
     return one;
 }
 
-/// What all grains do to the fluid in the coming step, by id; debts are paid.
+/// What all grains do to the fluid in the coming step, by id.
 std::vector<ForeseenGrain> foresee(const GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system,
                                    double dt) {
     const Grains& g = system.grains;
     std::vector<ForeseenGrain> all(g.size());
     parallel_for(g.size(), [&](std::size_t k) {
         const auto id = static_cast<std::size_t>(g.id[k]);
-        if (f.at_grains.dry[id] == 0) all[id] = foresee_one(f, system, c.freedom[id], k, dt);
+        if (f.at_grains.dry[id] != 0) return;
+        all[id] = foresee_one(f, system, c.freedom[id], k, dt);
+        all[id].drift += (1.0 - c.reached[id]) * g.v[k]; // from where it has been placed
     });
     return all;
 }
@@ -328,7 +334,7 @@ void couple(GridCoupling& c, GridFluid& fluid, const GrainSystem& grains) {
 
 void advance_grid_coupled(GridCoupling& c, GridFluid& fluid, FluidOnGrains& f, GrainSystem& grains, double dt,
                           std::int64_t step) {
-    set_places(c, fluid, grains, dt);
+    set_places(c, fluid, grains, c.two_way ? dt : 0.5 * dt);
     if (c.two_way) change_porosity(fluid, c.eps);
     const bool with_stress = needs_stress(f) || c.self;
     gather(c, fluid, f.at_grains, with_stress);

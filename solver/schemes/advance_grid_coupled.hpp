@@ -16,9 +16,10 @@ struct GridCoupling {
     GridWeights weights;
     std::int64_t grain_steps = 1; // in one of the fluid
 
-    GrainPlaces places; // where the present velocities take the grains in the step, by id
-    Field<double> eps;  // by cell, of these places; the fluid's own where it feels the grains
-    Relief relief;      // of these places
+    GrainPlaces places; // where the present velocities take the grains in the step, by id; one way, in half of it
+    std::vector<double> reached; // share of that way, by id: less than 1 where a wall is in it
+    Field<double> eps;           // by cell, of these places; the fluid's own where it feels the grains
+    Relief relief;               // of these places
 
     // by id, over the steps
     std::vector<Vec3> owed; // what a grain has received and the fluid has not given yet, or the reverse [kg m/s]

@@ -178,6 +178,57 @@ TEST(GridCoupled, DenseFreeGrainsComeTogetherInLongSteps) {
         }
 }
 
+/// Volume of the fluid as its mass equation has it [m3], and what flows out of the box along z, less what flows in
+/// [m3/s].
+double volume_taken(const GridFluid& f) {
+    const Field<double>& eps = f.eps_taken.empty() ? f.eps : f.eps_taken;
+    double sum = 0.0;
+    for_each_place(f.grid.cells(), [&](const Place& p, std::size_t k) { sum += eps[k] * f.grid.cell_volume(p); });
+    return sum;
+}
+double net_outflow(const GridFluid& f) {
+    double sum = 0.0;
+    for_each_place(f.grid.faces(2), [&](const Place& p, std::size_t k) {
+        if (p[2] == 0) sum -= open_area(f, 2, p) * f.u[2][k];
+        if (p[2] == f.grid.axis[2].cells()) sum += open_area(f, 2, p) * f.u[2][k];
+    });
+    return sum;
+}
+
+TEST(GridCoupled, NoVolumeIsLostWhereGrainsFollowTheStreamOut) {
+    const std::string ends = R"(
+body_force = [0.0, 0.0, 0.0]
+[[inlet]]
+name = "in"
+point = [0.0, 0.0, 0.0]
+normal = [0.0, 0.0, 1.0]
+profile = {law = "uniform", speed = 0.05}
+[[outlet]]
+name = "out"
+point = [0.0, 0.0, 1.6e-3]
+normal = [0.0, 0.0, -1.0]
+pressure = 0.0
+)";
+    for (const char* step : {"1e-3", "5e-3"}) {
+        Simulation s =
+            simulation({{"walls", ends},
+                        {"periodic", "[true, true, false]"},
+                        {"arrange", "{law = \"lattice\", kind = \"cubic\", lower = [0.0, 0.0, 0.43e-3], upper = "
+                                    "[1.6e-3, 1.6e-3, 1.58e-3], spacing = 1.1428571428571429e-4}"},
+                        {"velocity", "[0.0, 0.0, 0.02]"},
+                        {"mean", ""},
+                        {"gravity", "[0.0, 0.0, 0.0]"},
+                        {"forces", "[\"pressure_gradient\"]"},
+                        {"step", step}});
+        for (int k = 0; k < 6; ++k) {
+            const double before = volume_taken(*s.grid);
+            advance(s, 1);
+            const double gained = volume_taken(*s.grid) - before;
+            EXPECT_NEAR(gained, -s.timing.dt * net_outflow(*s.grid), 1e-8 * before) << step << " " << k;
+        }
+    }
+}
+
 TEST(GridCoupled, AGrainIsHeldOrFree) {
     // a grain on the floor of a channel that is blown upwards against the roof: contacts hold it, drag pulls it
     const std::string walls = R"(
