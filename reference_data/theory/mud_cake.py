@@ -1,8 +1,9 @@
 """Measures of a bed of grains in the porous channel, the paper's table and claims, and its correlation.
 
 At rest is a grain slower than a twentieth of the channel's mean velocity. Bed height: the paper does not say how it was
-measured; here the distance between the 2nd and the 98th percentile of the heights of grains at rest, plus one diameter. Grains that
-are caught in corners far above the bed count in that; the height over which the pores are filled knows nothing of them.
+measured; here the distance between the 2nd and the 98th percentile of the heights of grains at rest, plus one diameter.
+Grains that are caught in corners far above the bed count in that; the height over which the pores are filled knows
+nothing of them.
 """
 
 import math

@@ -35,8 +35,8 @@ void couple(GridCoupling& coupling, GridFluid& fluid, const GrainSystem& grains)
 
 /// One step of `dt`. In the fluid's equations a grain is what its exchange law makes of it under the velocity and the
 /// stress at the end of the step, u' and s', gathered where its present velocity v takes it,
-///     drag = b (phi1 (u' - v) - dt phi2 g),    way/dt - v = (1 - phi1)(u' - v) + dt phi2 g,    phi1, phi2 of z = b
-///     dt/m,
+///     drag = b (phi1 (u' - v) - dt phi2 g),
+///     way/dt - v = (1 - phi1)(u' - v) + dt phi2 g,    phi1, phi2 of z = b dt/m,
 /// with all forces but drag and contacts in g, V s'/m among them with `pressure_gradient`. Drag and way are both linear
 /// in u' and p': the way is in the mass equation, so that no step is too long for the slip, the stress or the room that
 /// grains make for each other. What its neighbours hold does not follow: m is its mass over its freedom. The grains
