@@ -24,7 +24,8 @@ def beds():
             for z in np.geomspace(1e-4, 1e4, 9):
                 for ratio in (1.05, 2.0, 1000.0):
                     for gradient in (True, False):
-                        yield waves.Bed(law, z, phi, ratio, gradient, z * diameter(phi) ** 2 / 18.0)
+                        for virtual in (0.0, 0.5 / ratio):
+                            yield waves.Bed(law, z, phi, ratio, gradient, z * diameter(phi) ** 2 / 18.0, virtual)
 
 
 @pytest.mark.parametrize("width", [None, 0.35e-3, 1e-3, 1.9e-3])
@@ -48,10 +49,11 @@ def test_explicit_steps_have_the_added_mass_of_the_step_before(phi, ratio):
 @pytest.mark.parametrize("law", LAWS)
 def test_long_waves_keep_the_mixture_volume(law):
     """eps u + phi (mean velocity of the way) = 0 at every step, and the debts of exponential exchange are rounding."""
-    bed = waves.Bed(law, 3.0, 0.6, 2.0)
-    matrix = waves.step_matrix(bed, waves.LongWave)
-    state = np.array([1.0, 0, 0, 0, 0, 0])
-    for _ in range(5):
-        state = matrix @ state
-        assert (1.0 - bed.phi) * state[2] + bed.phi * state[4] == pytest.approx(0.0, abs=1e-12)
-        assert state[3] == pytest.approx(0.0, abs=1e-12)
+    for virtual in (0.0, 0.25):
+        bed = waves.Bed(law, 3.0, 0.6, 2.0, virtual=virtual)
+        matrix = waves.step_matrix(bed, waves.LongWave)
+        state = np.array([1.0, 0, 0, 0, 0, 0])
+        for _ in range(5):
+            state = matrix @ state
+            assert (1.0 - bed.phi) * state[2] + bed.phi * state[4] == pytest.approx(0.0, abs=1e-12)
+            assert state[3] == pytest.approx(0.0, abs=1e-12)

@@ -14,9 +14,10 @@ struct FlowPoint {
 
 /// The fluid at a grain.
 struct LocalFluid : FlowPoint {
-    double eps = 1.0;       // fluid fraction
-    double density = 0.0;   // [kg/m3]
-    double viscosity = 0.0; // dynamic [Pa s]
+    Vec3 stress = Vec3::Zero(); // -grad P + div tau, what acts on a grain's volume; rho Du/Dt of a given flow [N/m3]
+    double eps = 1.0;           // fluid fraction
+    double density = 0.0;       // [kg/m3]
+    double viscosity = 0.0;     // dynamic [Pa s]
 };
 
 /// What the forces need to know of the grain.

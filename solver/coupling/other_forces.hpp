@@ -31,15 +31,16 @@ struct Buoyancy {
     }
 };
 
-/// rho V Du/Dt: stress of the accelerating undisturbed flow, without its hydrostatic part. Du/Dt follows the fluid
-/// (+u . grad u; some papers print a minus or the derivative along the grain's path). Maxey & Riley 1983, Auton et al.
+/// V (-grad P + div tau): stress of the undisturbed flow, without its hydrostatic part. It is rho V Du/Dt in a flow
+/// that nothing else pushes, where Du/Dt follows the fluid (+u . grad u; some papers print a minus or the derivative
+/// along the grain's path); among grains the fluid pays their drag out of it, too. Maxey & Riley 1983, Auton et al.
 /// 1988.
 struct PressureGradient {
     static constexpr std::string_view name = "pressure_gradient";
-    static constexpr LawInfo info{"rho V Du/Dt", "grains small against the flow's scale",
+    static constexpr LawInfo info{"V (-grad P + div tau)", "grains small against the flow's scale",
                                   "Maxey & Riley 1983, Phys. Fluids 26, 883-889"};
     Vec3 operator()(const LocalFluid& fluid, const LocalGrain& grain, const Vec3& /*gravity*/) const {
-        return fluid.density * sphere_volume(grain.diameter) * fluid.acceleration;
+        return sphere_volume(grain.diameter) * fluid.stress;
     }
     /// The share of a mean pressure gradient [Pa/m], which drives fluid and grains alike.
     Vec3 from_outside(const LocalFluid& /*fluid*/, const LocalGrain& grain, const Vec3& /*gravity*/,
@@ -60,9 +61,10 @@ struct ConvectiveAcceleration {
     }
 };
 
-/// C_m rho V (Du/Dt - dv/dt), C_m = 1/2 for a sphere. Returned is the part of the fluid's acceleration; the part
-/// -C_m rho V dv/dt is inertia that moves with the grain and is treated as such: the integrator adds `added_mass` to
-/// the mass of the grain on the left-hand side, which is stable for any density ratio.
+/// C_m rho V (Du/Dt - dv/dt), C_m = 1/2 for a sphere. Du/Dt is what the fluid does, and not the stress over its
+/// density: a bed that is held in a steady flow has the one's drag, and nothing of the other. Returned is the part of
+/// the fluid's acceleration; the part -C_m rho V dv/dt is inertia that moves with the grain and is treated as such: the
+/// integrator adds `added_mass` to the mass of the grain on the left-hand side, which is stable for any density ratio.
 struct VirtualMass {
     static constexpr std::string_view name = "virtual_mass";
     static constexpr LawInfo info{"1/2 rho V (Du/Dt - dv/dt)", "one sphere; eps near 1",
@@ -131,7 +133,22 @@ struct LiAhmadi {
 };
 
 /// Choosing no force is an empty list of forces. Basset's history force carries a state: history_force.hpp.
-using OtherForce = std::variant<Buoyancy, PressureGradient, ConvectiveAcceleration, VirtualMass, SaffmanMei, LiAhmadi>;
+using SoundForces = std::variant<Buoyancy, PressureGradient, ConvectiveAcceleration, VirtualMass, SaffmanMei, LiAhmadi>;
+
+#ifdef PLUMB_PLANTED
+/// Wrong on purpose, in test builds only: the stress over the density for the fluid's acceleration, which among grains
+/// is the greater by what the fluid pays for their drag. What this solver itself once had.
+struct PlantedVirtualMassOfStress {
+    static constexpr std::string_view name = "virtual_mass_of_stress";
+    static constexpr LawInfo info{"1/2 V (-grad P + div tau)", "none", "planted fault"};
+    Vec3 operator()(const LocalFluid& fluid, const LocalGrain& grain, const Vec3& /*gravity*/) const {
+        return VirtualMass::coefficient * sphere_volume(grain.diameter) * fluid.stress;
+    }
+};
+using OtherForce = JoinedFamilies<SoundForces, std::variant<PlantedVirtualMassOfStress>>;
+#else
+using OtherForce = SoundForces;
+#endif
 
 /// Force of one law on the grain [N].
 inline Vec3 force_on_grain(const OtherForce& law, const LocalFluid& fluid, const LocalGrain& grain,

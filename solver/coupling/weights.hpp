@@ -63,6 +63,7 @@ struct GatheredFluid {
     std::vector<Vec3> u;      // velocity at the start of the step [m/s]
     std::vector<Vec3> a;      // acceleration without the forces of the grains [m/s2]
     std::vector<Vec3> stress; // -grad P + div tau [N/m3]
+    std::vector<Vec3> along;  // Du/Dt over the step [m/s2]; empty where it is not known but by the stress
     std::vector<double> eps;  // fluid fraction
     std::vector<char> dry;    // 1 where no particle is in reach
     std::vector<double> load; // mass of grains over mass of fluid, where the grain's force goes; 0 one way

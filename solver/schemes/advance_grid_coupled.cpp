@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/parallel.hpp"
 #include "schemes/advance_grid.hpp"
+#include "schemes/foreseen_step.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,6 @@
 namespace plumb {
 
 namespace {
-
-constexpr double held = 1e-6; // a freedom below which a grain is taken as held fast: mobility and rate would underflow
 
 /// Where the grains will be `ahead` [s] from now, with their present velocities, or where this ends in a wall, a half,
 /// a quarter or nothing of the way towards it; their columns of P. Grains that are new have no debts and are free.
@@ -87,109 +86,37 @@ void gather(const GridCoupling& c, const GridFluid& fluid, GatheredFluid& at, bo
     });
 }
 
-bool needs_stress(const FluidOnGrains& f) {
-    return std::any_of(f.forces.begin(), f.forces.end(), [](const OtherForce& law) {
-        return std::holds_alternative<PressureGradient>(law) || std::holds_alternative<VirtualMass>(law);
-    });
-}
-
-/// Forces on a grain that the fluid's own equation has already, or that nothing of the scene's fluid exerts: the stress
-/// on its volume, which the fluid keeps on its own share, a mean gradient, buoyancy [N].
-Vec3 force_without_reaction(const FluidOnGrains& f, const LocalFluid& local, double d, const Vec3& gravity) {
-    Vec3 force = Vec3::Zero();
-    for (const OtherForce& law : f.forces)
-        if (std::holds_alternative<PressureGradient>(law) || std::holds_alternative<Buoyancy>(law))
-            force += force_on_grain(law, local, {d, Vec3::Zero()}, gravity);
-    return force;
-}
-
-bool shares_stress(const FluidOnGrains& f) {
-    return std::any_of(f.forces.begin(), f.forces.end(),
-                       [](const OtherForce& law) { return std::holds_alternative<PressureGradient>(law); });
-}
-
-/// A grain in the coming step, as the fluid's equations foresee it.
-struct ForeseenGrain {
-    double rate = 0.0;         // drag is rate u' - known - hands_on s' [N s/m]
-    Vec3 known = Vec3::Zero(); // [N]
-    double hands_on = 0.0;     // [m3]
-    double follows = 0.0;      // its way over the step's length is v + drift + follows (u' - u) + yields s'
-    double yields = 0.0;       // [m3 s/kg]
-    Vec3 drift = Vec3::Zero(); // [m/s]
-    Vec3 drag(const Vec3& u, const Vec3& stress) const { return rate * u - known - hands_on * stress; }
-};
-
-ForeseenGrain foresee_one(const FluidOnGrains& f, const GrainSystem& system, double freedom, std::size_t k, double dt) {
-    const Grains& g = system.grains;
-    const auto id = static_cast<std::size_t>(g.id[k]);
-    const double d = 2.0 * g.radius[k];
-    const LocalFluid local = gathered_fluid(f, id);
-    const auto resistance = [&](double slip) {
-        return drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip);
-    };
-    const Vec3 slip = g.v[k] - local.u;
-    ForeseenGrain one;
-    if (std::holds_alternative<ExplicitExchange>(f.exchange)) {
-        one.known = resistance(slip.norm()) * slip;
-        return one;
-    }
-    const double mobility = freedom * g.mobility[k];
-    if (mobility < held * g.mobility[k] || mobility == 0.0) {
-        one.rate = resistance(slip.norm());
-        one.known = one.rate * g.v[k];
-        return one;
-    }
-    Vec3 other = g.mass[k] * system.domain.gravity;
-    for (const OtherForce& law : f.forces) other += force_on_grain(law, local, {d, g.v[k]}, system.domain.gravity);
-    const Vec3 acceleration = mobility * other;
-    const double volume = shares_stress(f) ? sphere_volume(d) : 0.0; // on which the stress acts
-    const Vec3 without_stress = acceleration - (mobility * volume) * f.at_grains.stress[id];
-    std::visit(
-        [&](const auto& exchange) {
-            const double rate = mid_step_rate(
-                exchange, [&](double speed) { return mobility * resistance(speed); }, slip, acceleration, dt);
-            const StepWeights w = exchange(rate * dt);
-            const double b = rate / mobility;
-            one.rate = b * w.phi1;
-            one.known = b * (w.phi1 * g.v[k] + (dt * w.phi2) * without_stress);
-            one.follows = 1.0 - w.phi1;
-            one.hands_on = one.follows * volume;
-            one.yields = dt * w.phi2 * mobility * volume;
-            one.drift = dt * w.phi2 * without_stress - one.follows * slip;
-        },
-        f.exchange);
-    return one;
-}
-
 /// What all grains do to the fluid in the coming step, by id.
-std::vector<ForeseenGrain> foresee(const GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system,
-                                   double dt) {
+std::vector<ForeseenStep> foresee(const GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, double dt) {
     const Grains& g = system.grains;
-    std::vector<ForeseenGrain> all(g.size());
+    std::vector<ForeseenStep> all(g.size());
     parallel_for(g.size(), [&](std::size_t k) {
         const auto id = static_cast<std::size_t>(g.id[k]);
         if (f.at_grains.dry[id] != 0) return;
-        all[id] = foresee_one(f, system, c.freedom[id], k, dt);
+        all[id] = foreseen_step(f, system, c.freedom[id], k, dt);
         all[id].drift += (1.0 - c.reached[id]) * g.v[k]; // from where it has been placed
     });
     return all;
 }
 
-void push_fluid(const GridCoupling& c, GridFluid& fluid, const std::vector<ForeseenGrain>& drag, double dt) {
+/// Without fluid near a grain its debt waits.
+void push_fluid(const GridCoupling& c, GridFluid& fluid, const std::vector<ForeseenStep>& all,
+                const std::vector<char>& dry, double dt) {
     for (std::size_t q = 0; q < fluid.dimensions(); ++q) {
         const auto axis = static_cast<Eigen::Index>(q);
         fluid.drag[q].assign(fluid.u[q].size(), 0.0);
         fluid.push[q].assign(fluid.u[q].size(), 0.0);
-        for (std::size_t id = 0; id < drag.size(); ++id)
-            c.weights.faces[q].spread(id, [&](std::size_t k, double weight) {
-                fluid.drag[q][k] += weight * drag[id].rate;
-                fluid.push[q][k] += weight * (drag[id].known[axis] - c.owed[id][axis] / dt);
-            });
+        for (std::size_t id = 0; id < all.size(); ++id)
+            if (dry[id] == 0)
+                c.weights.faces[q].spread(id, [&](std::size_t k, double weight) {
+                    fluid.drag[q][k] += weight * all[id].rate;
+                    fluid.push[q][k] += weight * (all[id].known[axis] - c.owed[id][axis] / dt);
+                });
     }
 }
 
 /// What the grains' ways do to the fluid's equations.
-void make_room(const GridCoupling& c, GridFluid& fluid, const std::vector<ForeseenGrain>& all) {
+void make_room(const GridCoupling& c, GridFluid& fluid, const std::vector<ForeseenStep>& all) {
     std::vector<double> of_grains(all.size());
     const auto sum = [&](auto&& of) {
         for (std::size_t id = 0; id < all.size(); ++id) of_grains[id] = of(id, all[id]);
@@ -197,14 +124,14 @@ void make_room(const GridCoupling& c, GridFluid& fluid, const std::vector<Forese
     };
     const std::vector<double>& volume = c.places.volume;
     ForeseenGrains& room = fluid.foreseen;
-    room.follows = sum([&](std::size_t id, const ForeseenGrain& one) { return volume[id] * one.follows; });
-    room.hands_on = sum([](std::size_t /*id*/, const ForeseenGrain& one) { return one.hands_on; });
-    room.yields = sum([&](std::size_t id, const ForeseenGrain& one) { return volume[id] * one.yields; });
+    room.follows = sum([&](std::size_t id, const ForeseenStep& one) { return volume[id] * one.follows; });
+    room.hands_on = sum([](std::size_t /*id*/, const ForeseenStep& one) { return one.hands_on; });
+    room.yields = sum([&](std::size_t id, const ForeseenStep& one) { return volume[id] * one.yields; });
     room.drift.assign(room.follows.size(), Vec3::Zero());
     for (std::size_t q = 0; q < fluid.dimensions(); ++q) {
         const auto axis = static_cast<Eigen::Index>(q);
         const Field<double> drift =
-            sum([&](std::size_t id, const ForeseenGrain& one) { return volume[id] * one.drift[axis]; });
+            sum([&](std::size_t id, const ForeseenStep& one) { return volume[id] * one.drift[axis]; });
         for (std::size_t k = 0; k < drift.size(); ++k) room.drift[k][axis] = drift[k];
     }
 }
@@ -215,17 +142,18 @@ std::vector<Vec3> velocities(const Grains& g) {
     return v;
 }
 
-/// What the fluid has done in a step, by id: its force by the drag foreseen, and what it has of itself already [N].
+/// What the fluid has done in a step, by id: its force by what has been foreseen, and what it has of itself already
+/// [N].
 struct Given {
-    std::vector<Vec3> drag, without;
+    std::vector<Vec3> foreseen, without;
 };
-Given given_by_fluid(const FluidOnGrains& f, const GrainSystem& system, const std::vector<ForeseenGrain>& foreseen) {
+Given given_by_fluid(const FluidOnGrains& f, const GrainSystem& system, const std::vector<ForeseenStep>& foreseen) {
     const Grains& g = system.grains;
     Given given{std::vector<Vec3>(g.size(), Vec3::Zero()), std::vector<Vec3>(g.size(), Vec3::Zero())};
     parallel_for(g.size(), [&](std::size_t k) {
         const auto id = static_cast<std::size_t>(g.id[k]);
         if (f.at_grains.dry[id] != 0) return;
-        given.drag[id] = foreseen[id].drag(f.at_grains.u[id], f.at_grains.stress[id]);
+        given.foreseen[id] = foreseen[id].given(f.at_grains.u[id], f.at_grains.stress[id]);
         given.without[id] = force_without_reaction(f, gathered_fluid(f, id), 2.0 * g.radius[k], system.domain.gravity);
     });
     return given;
@@ -242,7 +170,7 @@ void settle(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, 
         const bool alone =
             g.mobility[k] > 0.0 && system.groups[static_cast<std::size_t>(g.group[k])].motion == Motion::free;
         const Vec3 received = alone ? f.forcing.impulse[k] : Vec3(dt * f.last_fluid_force[id]);
-        c.owed[id] = received - dt * given.without[id] - dt * given.drag[id];
+        c.owed[id] = received - dt * given.without[id] - dt * given.foreseen[id];
         if (!alone) return;
         const Vec3 acted = received + (dt * g.mass[k]) * system.domain.gravity;
         const Vec3 of_contacts = g.mass[k] * (g.v[k] - v_before[id]) - acted;
@@ -250,6 +178,13 @@ void settle(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, 
         const bool untouched = of_contacts.squaredNorm() <= 1e-16 * square || square == 0.0; // rounding
         c.freedom[id] = untouched ? 1.0 : std::clamp(1.0 + of_contacts.dot(acted) / square, 0.0, 1.0);
     });
+}
+
+/// How the fluid that grains see has changed in the step: where it is, and by moving on.
+void set_along(GatheredFluid& at, const std::vector<Vec3>& u_before, double dt) {
+    at.along.resize(at.u.size());
+    parallel_for(at.u.size(),
+                 [&](std::size_t id) { at.along[id] = (at.u[id] - u_before[id]) / dt + at.gradient[id] * at.u[id]; });
 }
 
 // --- the grains' own disturbance ---
@@ -291,11 +226,11 @@ std::vector<Vec3> pushes_besides_drag(const GridCoupling& c, const FluidOnGrains
 /// Drag foreseen as a law of the gathered velocity, in which the grain's own is: with u' - past - R F for u', and the
 /// push F = besides - drag. What is handed on of the stress is that of the step's start here.
 void see_through_own(GridCoupling& c, const std::vector<Vec3>& besides, const std::vector<Push>& pushes,
-                     const WakeStep& wake, std::int64_t step, std::vector<ForeseenGrain>& foreseen) {
+                     const WakeStep& wake, std::int64_t step, std::vector<ForeseenStep>& foreseen) {
     constexpr double most = 0.9;
     const std::vector<double> response = fade_wakes(*c.self, pushes, wake);
     for (std::size_t id = 0; id < foreseen.size(); ++id) {
-        ForeseenGrain& one = foreseen[id];
+        ForeseenStep& one = foreseen[id];
         const double carried = one.rate * response[id];
         if (!(carried <= most))
             throw Diverged(step, wake.dt * static_cast<double>(step), "share of its slip that a grain's own push makes",
@@ -311,7 +246,7 @@ void see_through_own(GridCoupling& c, const std::vector<Vec3>& besides, const st
 void push_own(GridCoupling& c, const FluidOnGrains& f, std::vector<Push>& pushes, const Given& given,
               const WakeStep& wake) {
     const std::vector<Vec3> besides = pushes_besides_drag(c, f, wake.dt);
-    for (std::size_t id = 0; id < pushes.size(); ++id) pushes[id].force = besides[id] - given.drag[id];
+    for (std::size_t id = 0; id < pushes.size(); ++id) pushes[id].force = besides[id] - given.foreseen[id];
     push_wakes(*c.self, pushes, wake);
 }
 
@@ -336,18 +271,19 @@ void advance_grid_coupled(GridCoupling& c, GridFluid& fluid, FluidOnGrains& f, G
                           std::int64_t step) {
     set_places(c, fluid, grains, c.two_way ? dt : 0.5 * dt);
     if (c.two_way) change_porosity(fluid, c.eps);
-    const bool with_stress = needs_stress(f) || c.self;
+    const bool with_stress = feels_stress(f) || c.self;
     gather(c, fluid, f.at_grains, with_stress);
     const WakeStep wake{dt, two_steps_known(fluid)};
     std::vector<Vec3> besides = c.self ? pushes_besides_drag(c, f, dt) : std::vector<Vec3>{};
     const std::vector<Vec3> stress = f.at_grains.stress;
     if (c.self) turn_wakes(*c.self, dt);
     take_out_own(c, f.at_grains);
-    std::vector<ForeseenGrain> foreseen = foresee(c, f, grains, dt);
+    const std::vector<Vec3> u_before = f.at_grains.u;
+    std::vector<ForeseenStep> foreseen = foresee(c, f, grains, dt);
     std::vector<Push> pushes = screened_pushes(c, f, grains);
     for (std::size_t id = 0; id < besides.size(); ++id) besides[id] += foreseen[id].hands_on * stress[id];
     if (c.self) see_through_own(c, besides, pushes, wake, step, foreseen);
-    if (c.two_way) push_fluid(c, fluid, foreseen, dt);
+    if (c.two_way) push_fluid(c, fluid, foreseen, f.at_grains.dry, dt);
     if (c.two_way) make_room(c, fluid, foreseen);
     advance_grid(fluid, dt, step);
 
@@ -355,6 +291,7 @@ void advance_grid_coupled(GridCoupling& c, GridFluid& fluid, FluidOnGrains& f, G
     const Given given = given_by_fluid(f, grains, foreseen);
     if (c.self) push_own(c, f, pushes, given, wake);
     take_out_own(c, f.at_grains);
+    if (has_virtual_mass(f)) set_along(f.at_grains, u_before, dt);
     const std::vector<Vec3> v_before = velocities(grains.grains);
     advance_gathered(f, grains, dt, step, c.grain_steps);
     if (c.self) set_own_slips(c, f, grains, pushes);

@@ -33,15 +33,12 @@ struct GridCoupling {
 /// The porosity of the grains' present places, as if they had always been there.
 void couple(GridCoupling& coupling, GridFluid& fluid, const GrainSystem& grains);
 
-/// One step of `dt`. In the fluid's equations a grain is what its exchange law makes of it under the velocity and the
-/// stress at the end of the step, u' and s', gathered where its present velocity v takes it,
-///     drag = b (phi1 (u' - v) - dt phi2 g),
-///     way/dt - v = (1 - phi1)(u' - v) + dt phi2 g,    phi1, phi2 of z = b dt/m,
-/// with all forces but drag and contacts in g, V s'/m among them with `pressure_gradient`. Drag and way are both linear
-/// in u' and p': the way is in the mass equation, so that no step is too long for the slip, the stress or the room that
-/// grains make for each other. What its neighbours hold does not follow: m is its mass over its freedom. The grains
-/// then take their own steps in the fluid found. What they receive, and where they go, otherwise than foreseen the
-/// fluid gives, and makes room for, in its next step.
+/// One step of `dt`. In the fluid's equations a grain is what its exchange law makes of it (foreseen_step) under the
+/// velocity and the stress at the end of the step, u' and s', gathered where its present velocity takes it. What it
+/// receives and its way are both linear in u' and p': the way is in the mass equation, so that no step is too long for
+/// the slip, the stress, the mass of fluid that grains carry along or the room that they make for each other. What its
+/// neighbours hold does not follow. The grains then take their own steps in the fluid found. What they receive, and
+/// where they go, otherwise than foreseen the fluid gives, and makes room for, in its next step.
 ///
 /// With `self` drag is that of the velocity without the grain's own wake, u' - past - R F: what the past has left and
 /// what the step's own push F will add, which is linear in the drag, so that the equations stay linear in u' and no

@@ -32,6 +32,7 @@ struct OneForcing {
 LocalFluid local_fluid(const FluidOnGrains& f, const Domain& domain, const Vec3& x, double t) {
     LocalFluid local;
     static_cast<FlowPoint&>(local) = std::visit([&](const auto& flow) { return flow(x, t); }, f.flow);
+    local.stress = f.density * local.acceleration;
     local.eps = porosity_at(f.porosity, domain.wrapped(x), domain);
     local.density = f.density;
     local.viscosity = f.viscosity;
@@ -252,7 +253,15 @@ void count_range(FluidOnGrains& f, const std::vector<OneForcing>& all) {
     }
 }
 
+template <class Law> bool has(const FluidOnGrains& f) {
+    return std::any_of(f.forces.begin(), f.forces.end(),
+                       [](const OtherForce& law) { return std::holds_alternative<Law>(law); });
+}
+
 } // namespace
+
+bool feels_stress(const FluidOnGrains& f) { return has<PressureGradient>(f); }
+bool has_virtual_mass(const FluidOnGrains& f) { return has<VirtualMass>(f); }
 
 void read_coupling_laws(Table& coupling, FluidOnGrains& f) {
     f.drag = make_family<DragLaw>(coupling.law("drag"));
@@ -315,7 +324,8 @@ Vec3 force_from_outside(const FluidOnGrains& f, double diameter, const Vec3& gra
 LocalFluid gathered_fluid(const FluidOnGrains& f, std::size_t id) {
     LocalFluid local;
     local.u = f.at_grains.u[id];
-    local.acceleration = (f.at_grains.stress[id] - f.mean_gradient) / f.density;
+    local.stress = f.at_grains.stress[id] - f.mean_gradient;
+    local.acceleration = f.at_grains.along.empty() ? Vec3(local.stress / f.density) : f.at_grains.along[id];
     if (f.at_grains.wants_gradient) local.gradient = f.at_grains.gradient[id];
     local.eps = f.at_grains.eps[id];
     local.density = f.density;

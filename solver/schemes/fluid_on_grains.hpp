@@ -45,6 +45,11 @@ struct FluidOnGrains {
     RangeUse range_use;
 };
 
+/// Whether the stress acts on the grains' volume.
+bool feels_stress(const FluidOnGrains& fluid);
+
+bool has_virtual_mass(const FluidOnGrains& fluid);
+
 /// The laws of the [coupling] table: drag, forces, exchange.
 void read_coupling_laws(Table& coupling, FluidOnGrains& fluid);
 

@@ -110,7 +110,9 @@ GridCoupling read_grid_coupling(Table& coupling, const GridFluid& fluid, const G
 }
 
 FluidOnGrains fluid_on_grains(Table& coupling, const GridFluid& fluid, bool full_pressure) {
-    return fluid_on_grains(coupling, fluid.density, fluid.viscosity, full_pressure);
+    FluidOnGrains f = fluid_on_grains(coupling, fluid.density, fluid.viscosity, full_pressure);
+    f.at_grains.wants_gradient |= has_virtual_mass(f); // u . grad u
+    return f;
 }
 
 void drive(Table& coupling, GridFluid& fluid, FluidOnGrains& on_grains, const GridCoupling& state,

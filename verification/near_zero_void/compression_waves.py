@@ -43,18 +43,20 @@ class LongWave:
 
 class Bed(NamedTuple):
     """A uniform bed: exchange law, dt over the relaxation time, solid fraction, density of grains over fluid's, whether the stress acts on grains,
-    and dt times the viscosity over the grains' density, m2."""
+    dt times the viscosity over the grains' density, m2, and the virtual mass over that of the grains."""
     exchange: str
     z: float
     phi: float
     ratio: float
     gradient: bool = True
     viscous: float = 0.0
+    virtual: float = 0.0
 
 
 def step_matrix(bed, symbols):
     """What a step makes of (v, v before, u, what is owed, the last way/dt, the way that was foreseen beyond v before)."""
-    z, phi, eps = bed.z, bed.phi, 1.0 - bed.phi
+    q = 1.0 / (1.0 + bed.virtual)                       # a grain's mass over that which moves with it
+    z, phi, eps = q * bed.z, bed.phi, 1.0 - bed.phi
     phi0 = LEFT[bed.exchange](z)
     phi1 = (1.0 - phi0) / z
     phi2 = (1.0 - phi1) / z
@@ -62,11 +64,14 @@ def step_matrix(bed, symbols):
     G, H, S = symbols.velocity, symbols.stress, symbols.displacement
     stressed = 1.0 if bed.gradient else 0.0
     foresees = bed.exchange != "explicit"
-    rate = z * phi1 if foresees else 0.0                # drag F = rate u' - known - (1 - phi1) a'
-    known = rate * v if foresees else z * (v - G * u)
-    follows = 1.0 - phi1 if foresees else 0.0
-    hands_on, yields = stressed * follows, stressed * phi2 * foresees
-    drift = follows * (H * (G * u - v) - u)             # of the way that is foreseen, what is known
+    if bed.virtual and not foresees:
+        raise ValueError("explicit exchange with virtual mass is not in this theory")
+    rate = q * phi1 * (bed.z + bed.virtual) if foresees else 0.0    # F = rate u' - known - hands_on a'
+    known = q * phi1 * (bed.z * v + bed.virtual * (G * u)) if foresees else z * (v - G * u)
+    relaxes = 1.0 - phi1 if foresees else 0.0
+    follows = relaxes + phi2 * q * bed.virtual if foresees else 0.0
+    hands_on, yields = stressed * (1.0 - q * phi1) * foresees, stressed * phi2 * q * foresees
+    drift = relaxes * H * (G * u - v) - follows * u     # of the way that is foreseen, what is known
     friction = yields * bed.viscous * symbols.difference**2
     # momentum and volume for u' and s, dt times the stress on the fluid over rho_p; the pressure's part alone makes grains yield
     left = np.array([[eps / bed.ratio + phi * rate, -(eps + phi * hands_on)], [eps + phi * (follows + friction), phi * yields]])
@@ -75,9 +80,10 @@ def step_matrix(bed, symbols):
     foreseen = drift + (follows + friction) * new_u + yields * stress
     push = stressed * H * stress                        # a'
     seen = G * new_u
-    drag = (rate * seen - known if foresees else -known) - follows * push
-    new_v = phi0 * v + z * phi1 * seen + phi1 * push
-    return np.array([new_v, v, new_u, new_v - v - push - drag, phi1 * v + z * phi2 * seen + phi2 * push, foreseen])
+    given = (rate * seen - known if foresees else -known) - (1.0 - q * phi1) * foresees * push
+    carried = q * (push + bed.virtual * (seen - G * u))
+    new_v = phi0 * v + z * phi1 * seen + phi1 * carried
+    return np.array([new_v, v, new_u, new_v - v - push - given, phi1 * v + z * phi2 * seen + phi2 * carried, foreseen])
 
 
 def factor(bed, symbols):

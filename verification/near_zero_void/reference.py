@@ -33,11 +33,13 @@ class Scene:
         self.phi = math.pi / 6.0 * (self.d / grain["arrange"]["spacing"]) ** 3
         self.z = self.dt * 18.0 * self.mu / (self.density * self.d**2)
         self.exchange, self.gradient = coupling["exchange"], "pressure_gradient" in coupling["forces"]
+        self.virtual = "virtual_mass" in coupling["forces"] and self.exchange != "explicit"  # for which the theory has none
         self.width = coupling["kernel_width"]
 
     def bed(self, rho=None):
         """In a fluid of another density too."""
-        return Bed(self.exchange, self.z, self.phi, self.density / (rho or self.rho), self.gradient, self.dt * self.mu / self.density)
+        virtual = 0.5 * (rho or self.rho) / self.density if self.virtual else 0.0
+        return Bed(self.exchange, self.z, self.phi, self.density / (rho or self.rho), self.gradient, self.dt * self.mu / self.density, virtual)
 
     @property
     def waves(self):
