@@ -49,3 +49,17 @@ def test_a_vanishing_sphere_falls_by_its_law():
     times, w = np.linspace(0.0, 0.2, 21), 0.025
     found = grid_fall.two_way(sphere, grid_fall.Box((16 * w, 16 * w, 16 * w), w, w), ("buoyancy", "pressure_gradient", "virtual_mass"), times)
     assert found.v == pytest.approx(speed_without_history(sphere, times, True), abs=1e-4 * sphere.terminal_speed())
+
+
+def test_virtual_mass_of_an_inviscid_wake():
+    """A push that begins in fluid at rest without viscosity sets it in motion by rho a = (2/3) F/(8 pi^(3/2) w^3): two thirds of a force are without
+    divergence. It carries the grain by half of that on its volume, which it has of its own push."""
+    d, w = 1e-3, 2e-3
+    sphere = Sphere(lambda re: 0.4 / 24.0 * re, 1e6, d, 1000.0, 1e-9)
+    size = 24.0 * w
+    start, times = sphere.terminal_speed(), np.array([0.0, 1e-6])
+    fall = [grid_fall.two_way(sphere, grid_fall.Box((size,) * 3, 0.5 * w, w), forces, times, start, 2) for forces in (("buoyancy",), ("buoyancy", "virtual_mass"))]
+    share = math.pi / 6.0 * d**3 / (8.0 * math.pi**1.5 * w**3)
+    carried = 0.5 * (2.0 / 3.0) * share * float(sphere.drag(start))  # N
+    without, found = ((one.v[-1] - start) / times[-1] * sphere.volume() * sphere.rho_p for one in fall)
+    assert found - without == pytest.approx(carried, rel=0.05)

@@ -1,4 +1,6 @@
-"""Speed and pressure over the plane of a run, as in the paper's Figure 3."""
+"""What is drawn of the mud cake: cylinders, speed and pressure over the plane of a run as in the paper's Figure 3, the studies."""
+
+import math
 
 import numpy as np
 
@@ -15,6 +17,19 @@ def plane(run, lower, upper):
     return 1e3 * x, 1e3 * y[rows[0]:rows[-1] + 2], speed[rows], p[rows]
 
 
+def draw_cylinders(axes, wall, cylinders):
+    """Of a scene's wall and its Array, as circles, mm."""
+    from matplotlib.patches import Circle
+
+    for number, y in enumerate(cylinders.rows()):
+        fewer = -1 if wall["between"] == "one_fewer" else 1
+        count = cylinders.per_row + (0 if number % 2 == 0 else fewer)
+        first = 0.5 * (cylinders.width - (count - 1) * cylinders.pitch)
+        for q in range(count):
+            x = wall["lower"][0] + first + q * cylinders.pitch
+            axes.add_patch(Circle((1e3 * x, 1e3 * y), 5e2 * float(cylinders.diameter(y)), color="0.75", lw=0))
+
+
 def fields_figure(run, lower=0.145, upper=0.3):
     """Speed and pressure over the plane, cylinders left white."""
     from matplotlib.figure import Figure
@@ -26,4 +41,21 @@ def fields_figure(run, lower=0.145, upper=0.3):
         axes.set(aspect="equal", xlabel="x (mm)")
         figure.colorbar(drawn, ax=axes, shrink=0.6, location="bottom", label=label)
     figure.axes[0].set_ylabel("y (mm)")
+    return figure
+
+
+def studies_figure(found):
+    """{study: (relative changes of P by member, of h_b)}."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8.0, 0.32 * len(found) + 1.0), layout="constrained")
+    places = np.arange(len(found))[::-1]
+    for number, (axes, what) in enumerate(zip(figure.subplots(1, 2, sharey=True), ("P", "h_b"))):
+        for place, changes in zip(places, found.values()):
+            one = 100.0 * np.array(changes[number])
+            axes.plot(one, np.full(len(one), place), "o", color="0.7", ms=3)
+            axes.errorbar(one.mean(), place, xerr=one.std(ddof=1) / math.sqrt(len(one)), fmt="D", color="C0", ms=4, capsize=2)
+        axes.axvline(0.0, color="k", lw=0.6)
+        axes.set(xlabel=f"change of {what} (%)")
+    figure.axes[0].set_yticks(places, list(found))
     return figure

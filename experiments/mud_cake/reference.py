@@ -9,7 +9,7 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "reference_data")]
 
-from bed_fields import fields_figure  # noqa: E402
+from bed_fields import draw_cylinders, fields_figure, studies_figure  # noqa: E402
 from theory import clean_channel, mud_cake  # noqa: E402
 from theory.bed_resistance import bed_drop  # noqa: E402
 from theory.clean_channel import DEPTH, MEAN, Array  # noqa: E402
@@ -21,6 +21,8 @@ UNITS = {
 }
 WITHIN = {"pressure": 0.1, "rise": 0.25, "height": 0.15}  # of Table 7, as the single rows are judged
 TWELVE = "n12_d08_single"  # whose clean pressure is the reference pressure of all with the same cells
+MEMBERS = ("", "_member_2", "_member_3", "_member_4")  # of a study on the strip
+FINE = "fine_"  # of the variants with cells of half the width
 ROWS = {row.name: row for row in mud_cake.rows()}
 INJECTED = 0.8  # s, of injection in Table 7
 
@@ -97,7 +99,7 @@ def clean_pressure(run):
 
 def reference_pressure(run):
     """Of the clean channel with 12 cylinders a row and the same cells, Pa: the run's own unless it has 16."""
-    return clean_pressure(run if rows_wall(run.scene)["per_row"] != 16 else run.other(TWELVE))
+    return clean_pressure(run if rows_wall(run.scene)["per_row"] != 16 else run.other((FINE if run.variant.startswith(FINE) else "") + TWELVE))
 
 
 def pressures(run):
@@ -216,8 +218,8 @@ def measure(quantity, run):
         "resting_share": lambda r: mud_cake.resting_share(Bed(r).x[:, 1], Bed(r).v), "injected_share": injected_share, "pore_filling": lambda r: mud_cake.pore_filling(Bed(r).x[:, 1], row(r.scene)),
         "trends_broken": lambda r: broken(mud_cake.trends(all_rows(r, lambda one: (final_pressure(one), Bed(one).height)))),
         "series_trends_broken": lambda r: broken(mud_cake.series_trends(all_rows(r, pressures))),
-        "pressure_change": lambda r: final_pressure(r) / final_pressure(r.other(unchanged(r))) - 1.0,
-        "height_change": lambda r: Bed(r).height / Bed(r.other(unchanged(r))).height - 1.0,
+        "pressure_change": lambda r: float(np.mean(changes(r, final_pressure))),
+        "height_change": lambda r: float(np.mean(changes(r, lambda one: Bed(one).height))),
     }
     if quantity.startswith("rows_missed_"):
         return missed(run, quantity.removeprefix("rows_missed_"))
@@ -227,8 +229,15 @@ def measure(quantity, run):
 
 
 def unchanged(run):
-    """The variant that a study's variant differs from in one thing."""
-    return "strip" if run.variant.startswith("strip") else "n16_d06_single"
+    """The variant of the whole width that one differs from in one thing."""
+    return run.variant.removeprefix(FINE) if run.variant.startswith(FINE) else "n16_d06_single"
+
+
+def changes(run, value):
+    """Of a value by what the variant changes, relative; by member where it has several."""
+    if not run.variant.startswith("strip"):
+        return [value(run) / value(run.other(unchanged(run))) - 1.0]
+    return [value(run.other(run.variant + one)) / value(run.other("strip" + one)) - 1.0 for one in MEMBERS]
 
 
 # --- tables and figures ---
@@ -276,7 +285,7 @@ def fits(runs):
     published = mud_cake.published_correlation()
     refit = mud_cake.correlation(list(ROWS.values()), [one.pressure for one in ROWS.values()])
     texts = [said("Equation (6) as printed, on Table 7", published), said("refitted to Table 7", refit)]
-    computed = {run.variant: run for run in finished(runs) if run.variant in ROWS}
+    computed = of_table(finished(runs))
     if len(computed) == len(ROWS):
         own = mud_cake.correlation(list(ROWS.values()), [final_pressure(computed[name]) for name in ROWS])
         texts.append(said("fitted to the runs", own))
@@ -294,19 +303,33 @@ def figures(runs):
     runs = finished(runs)
     drawn = [("beds", beds_figure(runs), "Grains at the end by their speed over the mean velocity, as in Figures 5 and 7; circles are the cylinders, lines the ends of the published bed."),
              ("pressure", series_figure(runs), "P over the time since the first grain, as in Figure 6; crosses are Table 7.")]
-    rows = [run for run in runs if run.variant in ROWS]
+    rows = of_table(runs)
     if len(rows) > 1:
         drawn.append(("rates", rates_figure(rows), "P against the rate, as in Figure 8: lines are Table 7, points the runs, dashed the correlation refitted to Table 7."))
     if runs:
-        one = next((run for run in runs if run.variant == TWELVE), runs[0])
+        one = rows.get(TWELVE, runs[0])
+        drawn += studies(runs)
         drawn.append(("fields", fields_figure(one), f"Speed and pressure of the fluid at the end of {one.variant}, as in Figure 3."))
     return drawn
 
 
+def studies(runs):
+    """What each study on the strip changes: [(name, figure, caption)], nothing where no study is."""
+    names = {run.variant for run in runs}
+    done = [run for run in runs if run.variant.startswith("strip_") and "member" not in run.variant and run.variant + MEMBERS[-1] in names]
+    found = {run.variant.removeprefix("strip_").replace("_", " "): (changes(run, final_pressure), changes(run, lambda one: Bed(one).height)) for run in done}
+    return [("studies", studies_figure(found), "What each study on the strip changes: four members (grey), mean and standard error.")] if found else []
+
+
+def of_table(runs):
+    """{row of Table 7: the run with the finest cells of those that are there}."""
+    found = {run.variant: run for run in runs}
+    return {name: found.get(FINE + name, found.get(name)) for name in ROWS if FINE + name in found or name in found}
+
+
 def shown(runs, most=12):
     """Those that Table 7 has, or the first ones."""
-    chosen = [run for run in runs if run.variant in ROWS] or runs
-    return chosen[:most]
+    return (list(of_table(runs).values()) or runs)[:most]
 
 
 def beds_figure(runs, lower=0.18, upper=0.27):
@@ -320,7 +343,7 @@ def beds_figure(runs, lower=0.18, upper=0.27):
         bed = Bed(run)
         axes.set(title=run.variant, xlim=(0.0, 1e3 * run.scene["domain"]["size"][0]), ylim=(1e3 * lower, 1e3 * upper), aspect="equal")
         axes.title.set_fontsize(8)
-        draw_cylinders(axes, run.scene)
+        draw_cylinders(axes, rows_wall(run.scene), bed.array)
         size = np.full(len(bed.x), 1e3 * bed.d)
         dots = EllipseCollection(size, size, np.zeros(len(size)), units="x", offsets=1e3 * bed.x[:, :2], transOffset=axes.transData, cmap="viridis")
         dots.set_array(np.linalg.norm(bed.v, axis=1) / MEAN)
@@ -333,20 +356,6 @@ def beds_figure(runs, lower=0.18, upper=0.27):
     if chosen:
         figure.colorbar(dots, ax=figure.axes, shrink=0.5, label="speed over mean velocity")
     return figure
-
-
-def draw_cylinders(axes, scene):
-    """As circles, mm."""
-    from matplotlib.patches import Circle
-
-    wall, cylinders = rows_wall(scene), array(scene)
-    for number, y in enumerate(cylinders.rows()):
-        fewer = -1 if wall["between"] == "one_fewer" else 1
-        count = cylinders.per_row + (0 if number % 2 == 0 else fewer)
-        first = 0.5 * (cylinders.width - (count - 1) * cylinders.pitch)
-        for q in range(count):
-            x = wall["lower"][0] + first + q * cylinders.pitch
-            axes.add_patch(Circle((1e3 * x, 1e3 * y), 5e2 * float(cylinders.diameter(y)), color="0.75", lw=0))
 
 
 def series_figure(runs):
@@ -380,7 +389,7 @@ def rates_figure(rows):
         known = [mud_cake.row_of(one, per_row, d) for one in (0.5, 1.0, 2.0)]
         axes.plot([one.rate for one in known], [one.pressure for one in known], color=color, label=f"N = {per_row}, {1e3 * d:g} mm")
         axes.plot([0.5, 2.0], [refit @ [1.0, per_row, one, 1e3 * d] for one in (0.5, 2.0)], color=color, ls="--", lw=0.7)
-        found = [(ROWS[run.variant].rate, final_pressure(run)) for run in rows if ROWS[run.variant] in known]
+        found = [(ROWS[name].rate, final_pressure(run)) for name, run in rows.items() if ROWS[name] in known]
         if found:
             axes.plot(*zip(*found), "o", color=color)
     axes.set(xlabel="rate over the reference rate (-)", ylabel="P (-)")

@@ -8,10 +8,11 @@ nu K^2, and a gradient takes the part along K, c = K_z/|K|. With g(k) the transf
     dA/dt = F - (nu K^2 + i k_z U) A,                         the fading sum of the grain's push F on the fluid, N s             (1)
     u     = sum share [(1 - c^2) Re A/rho - c^2 V v]          the velocity gathered: wake, and the fluid that makes room          (2)
     S     = -sum share' [(1 - c^2) nu K^2 Re A + c^2 F + c^2 rho V v']      -grad p + div tau gathered, N/m3                      (3)
+    rho a = sum share [(1 - c^2) (F - nu K^2 Re A) - c^2 rho V v']          rho du/dt gathered where the grain is, N/m3          (4)
 
-(3) is rho du/dt less the push; cells gather what faces have, share' = share cos(k_z a/2). The grain:
+(4) is the stress and the push; cells gather what faces have, share' = share cos(k_z a/2). The grain:
 
-    m v' = W - D(v - u) + V S + [V S - rho V v']/2,    F = D(v - u) - [V S - rho V v']/2,                                       (4)
+    m v' = W - D(v - u) + V S + [V rho a - rho V v']/2,    F = D(v - u) - [V rho a - rho V v']/2,                               (5)
 
 the brackets with virtual mass only, V S with the pressure gradient only. U is the slip v - u, as in `self_disturbance` ("slip").
 Left out: the wake's own momentum flux (second order in u/v), the porosity in friction, of the order of the grain's share of its own
@@ -58,15 +59,16 @@ class Fall(NamedTuple):
 
 
 class _Grain:
-    """Equations (2) to (4) for given A and v, solved for F and v'."""
+    """Equations (2) to (5) for given A and v, solved for F and v'."""
 
     def __init__(self, sphere, waves, forces):
         self.sphere, self.waves, self.nu = sphere, waves, sphere.mu / sphere.rho
         self.virtual = 0.5 if "virtual_mass" in forces else 0.0
-        self.stress = self.virtual + (1.0 if "pressure_gradient" in forces else 0.0)
+        self.stress = 1.0 if "pressure_gradient" in forces else 0.0
         volume = sphere.volume()
         self.whole = volume * float(waves.of_cells @ waves.along)  # V times what multiplies F in -S
         self.room = volume * float(waves.share @ waves.along)
+        self.push = volume * float(waves.share @ (1.0 - waves.along))  # V times what multiplies F in rho a
 
     def gathered(self, v, a):
         return float((self.waves.share * (1.0 - self.waves.along)) @ a.real) / self.sphere.rho - self.room * v
@@ -75,12 +77,13 @@ class _Grain:
         """(v', F)."""
         s, w = self.sphere, self.waves
         drag = float(s.drag(v - self.gathered(v, a)))
-        from_wake = -s.volume() * float((w.of_cells * (1.0 - w.along) * self.nu * w.square) @ a.real)
+        fades = (1.0 - w.along) * self.nu * w.square
+        stress_of_wake, slowing = -s.volume() * float((w.of_cells * fades) @ a.real), -s.volume() * float((w.share * fades) @ a.real)
         displaced = s.rho * s.volume()
-        # V S = from_wake - whole F - whole displaced v'; unknowns (v', F)
-        matrix = [[s.rho_p * s.volume() + self.virtual * displaced + self.stress * self.whole * displaced, self.stress * self.whole],
-                  [-self.virtual * (self.whole + 1.0) * displaced, 1.0 - self.virtual * self.whole]]
-        right = [s.weight() - drag + self.stress * from_wake, drag - self.virtual * from_wake]
+        # V S = stress_of_wake - whole (F + displaced v'), V rho a = slowing + push F - room displaced v'; unknowns (v', F)
+        matrix = [[s.rho_p * s.volume() + (self.stress * self.whole + self.virtual * (1.0 + self.room)) * displaced, self.stress * self.whole - self.virtual * self.push],
+                  [-self.virtual * (1.0 + self.room) * displaced, 1.0 + self.virtual * self.push]]
+        right = [s.weight() - drag + self.stress * stress_of_wake + self.virtual * slowing, drag - self.virtual * slowing]
         return np.linalg.solve(matrix, right)
 
 

@@ -1,10 +1,11 @@
 // Forces of the fluid on one grain besides drag and history: buoyancy, undisturbed flow, virtual mass, lift.
 //
-// Each law maps (fluid at the grain, grain, gravity) to a force on the grain [N]. V = pi d^3/6. The undisturbed fluid
-// obeys rho Du/Dt = -grad p + div tau + rho g, so the stress it would exert on the volume of the grain, V (-grad p +
-// div tau), is the sum of `buoyancy` and `pressure_gradient`. A force that no computed fluid may exert, because that
-// fluid does not carry the pressure behind it, says so with `from_outside`: what a grain receives by it, the fluid does
-// not lose. To add a force: write the struct, name it in OtherForce at the end, add its test and its README row.
+// Each law maps (fluid at the grain, grain, gravity) to a force on the grain [N]. V = pi d^3/6. A fluid that nothing
+// else pushes obeys rho Du/Dt = -grad p + div tau + rho g, so the stress it would exert on the volume of the grain, V
+// (-grad p + div tau), is the sum of `buoyancy` and `pressure_gradient`. A force that no computed fluid may exert,
+// because that fluid does not carry the pressure behind it, says so with `from_outside`: what a grain receives by it,
+// the fluid does not lose. To add a force: write the struct, name it in OtherForce at the end, add its test and its
+// README row.
 #pragma once
 
 #include "core/laws.hpp"
@@ -144,6 +145,7 @@ struct PlantedVirtualMassOfStress {
     Vec3 operator()(const LocalFluid& fluid, const LocalGrain& grain, const Vec3& /*gravity*/) const {
         return VirtualMass::coefficient * sphere_volume(grain.diameter) * fluid.stress;
     }
+    static double mass(double density, double diameter) { return VirtualMass::mass(density, diameter); }
 };
 using OtherForce = JoinedFamilies<SoundForces, std::variant<PlantedVirtualMassOfStress>>;
 #else
@@ -180,7 +182,14 @@ inline bool needs_gradient(const OtherForce& law) {
 
 /// Inertia a law adds to a grain [kg]; zero for all but virtual mass.
 inline double added_mass(const OtherForce& law, double density, double diameter) {
-    return std::holds_alternative<VirtualMass>(law) ? VirtualMass::mass(density, diameter) : 0.0;
+    return std::visit(
+        [&](const auto& one) {
+            if constexpr (requires { one.mass(density, diameter); })
+                return one.mass(density, diameter);
+            else
+                return 0.0;
+        },
+        law);
 }
 
 } // namespace plumb

@@ -69,6 +69,7 @@ void gather(const GridCoupling& c, const GridFluid& fluid, GatheredFluid& at, bo
     at.eps.assign(n, 1.0);
     at.dry.assign(n, 0);
     at.load.assign(n, 0.0);
+    at.along.clear(); // of the last step
     if (at.wants_gradient) at.gradient.assign(n, Eigen::Matrix3d::Zero());
     CellFields fields = with_stress || at.wants_gradient ? cell_fields(fluid, at.wants_gradient) : CellFields{};
     if (!fields.stress.empty() && c.two_way) c.relief.gather(fields.stress);
@@ -172,19 +173,32 @@ void settle(GridCoupling& c, const FluidOnGrains& f, const GrainSystem& system, 
         const Vec3 received = alone ? f.forcing.impulse[k] : Vec3(dt * f.last_fluid_force[id]);
         c.owed[id] = received - dt * given.without[id] - dt * given.foreseen[id];
         if (!alone) return;
-        const Vec3 acted = received + (dt * g.mass[k]) * system.domain.gravity;
-        const Vec3 of_contacts = g.mass[k] * (g.v[k] - v_before[id]) - acted;
+        const Vec3 change = g.v[k] - v_before[id];
+        const Vec3 force = received + (dt * g.mass[k]) * system.domain.gravity;
+        const Vec3 of_contacts = g.mass[k] * change - force;
+        const Vec3 acted = force + (1.0 / g.mobility[k] - g.mass[k]) * change; // added mass moves with the grain
         const double square = acted.squaredNorm();
         const bool untouched = of_contacts.squaredNorm() <= 1e-16 * square || square == 0.0; // rounding
         c.freedom[id] = untouched ? 1.0 : std::clamp(1.0 + of_contacts.dot(acted) / square, 0.0, 1.0);
     });
 }
 
-/// How the fluid that grains see has changed in the step: where it is, and by moving on.
-void set_along(GatheredFluid& at, const std::vector<Vec3>& u_before, double dt) {
+/// The fluid that grains see at the start of a step: its velocity, and u . grad u.
+struct SeenFluid {
+    std::vector<Vec3> u, carried;
+};
+SeenFluid seen_fluid(const GatheredFluid& at, bool with_carried) {
+    SeenFluid seen{at.u, {}};
+    if (with_carried)
+        for (std::size_t id = 0; id < at.u.size(); ++id) seen.carried.push_back(at.gradient[id] * at.u[id]);
+    return seen;
+}
+
+/// How it has changed in the step: where it is, and, as has been foreseen, by moving on.
+void set_along(GatheredFluid& at, const SeenFluid& before, double dt) {
     at.along.resize(at.u.size());
     parallel_for(at.u.size(),
-                 [&](std::size_t id) { at.along[id] = (at.u[id] - u_before[id]) / dt + at.gradient[id] * at.u[id]; });
+                 [&](std::size_t id) { at.along[id] = (at.u[id] - before.u[id]) / dt + before.carried[id]; });
 }
 
 // --- the grains' own disturbance ---
@@ -278,7 +292,7 @@ void advance_grid_coupled(GridCoupling& c, GridFluid& fluid, FluidOnGrains& f, G
     const std::vector<Vec3> stress = f.at_grains.stress;
     if (c.self) turn_wakes(*c.self, dt);
     take_out_own(c, f.at_grains);
-    const std::vector<Vec3> u_before = f.at_grains.u;
+    const SeenFluid before = seen_fluid(f.at_grains, has_virtual_mass(f));
     std::vector<ForeseenStep> foreseen = foresee(c, f, grains, dt);
     std::vector<Push> pushes = screened_pushes(c, f, grains);
     for (std::size_t id = 0; id < besides.size(); ++id) besides[id] += foreseen[id].hands_on * stress[id];
@@ -291,7 +305,7 @@ void advance_grid_coupled(GridCoupling& c, GridFluid& fluid, FluidOnGrains& f, G
     const Given given = given_by_fluid(f, grains, foreseen);
     if (c.self) push_own(c, f, pushes, given, wake);
     take_out_own(c, f.at_grains);
-    if (has_virtual_mass(f)) set_along(f.at_grains, u_before, dt);
+    if (has_virtual_mass(f)) set_along(f.at_grains, before, dt);
     const std::vector<Vec3> v_before = velocities(grains.grains);
     advance_gathered(f, grains, dt, step, c.grain_steps);
     if (c.self) set_own_slips(c, f, grains, pushes);

@@ -42,8 +42,8 @@ void couple(GridCoupling& coupling, GridFluid& fluid, const GrainSystem& grains)
 ///
 /// With `self` drag is that of the velocity without the grain's own wake, u' - past - R F: what the past has left and
 /// what the step's own push F will add, which is linear in the drag, so that the equations stay linear in u' and no
-/// step is too long for the slip. The step ends (Diverged) where a grain's own disturbance would carry it all, R b
-/// phi1 > 0.9.
+/// step is too long for the slip. The step ends (Diverged) where a grain's own disturbance would carry it all, R times
+/// the rate foreseen > 0.9.
 void advance_grid_coupled(GridCoupling& coupling, GridFluid& fluid, FluidOnGrains& at_grains, GrainSystem& grains,
                           double dt, std::int64_t step);
 

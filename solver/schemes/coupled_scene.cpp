@@ -182,10 +182,9 @@ FluidOnGrains fluid_on_grains(Table& coupling, const SphFluid& fluid) {
 
 void drive(Table& coupling, SphFluid& fluid, FluidOnGrains& on_grains, const Coupling& state,
            const GrainSystem& grains) {
-    if (state.two_way && has_virtual_mass(on_grains))
-        coupling.fail("forces",
-                      "\"virtual_mass\" needs the fluid's own acceleration, drag of all grains included, which "
-                      "smoothed particles do not give two-way: leave it out");
+    if (has_virtual_mass(on_grains) && fluid.body_force.norm() > 0.0)
+        coupling.fail("forces", "\"virtual_mass\" takes the stress for the fluid's acceleration among smoothed "
+                                "particles, which weight and body forces are not in: leave it out");
     on_grains.mean_gradient = read_mean_gradient(coupling, on_grains, state.two_way,
                                                  [&] { return balancing_gradient(fluid, on_grains, grains); });
     fluid.body_force -= on_grains.mean_gradient / fluid.density;

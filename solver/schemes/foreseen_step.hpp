@@ -16,12 +16,12 @@ struct ForeseenStep {
     Vec3 given(const Vec3& u, const Vec3& stress) const { return rate * u - known - hands_on * stress; }
 };
 
-/// Grain k in the coming step of `dt`, in the fluid that has been gathered at its start. With M = (m + C_m rho
-/// V)/freedom, z = b dt/M, phi1 and phi2 of the exchange law, u the velocity now, g u = u . grad u, X all forces but
-/// drag and what depends on s' and u', L the part of X that the fluid exerts, B = C_m rho V with `virtual_mass` and W =
-/// V with `pressure_gradient` (else 0),
-///     M dv/dt = b (u' - v) + X + W s' + B ((u' - u)/dt + g u) + what contacts give, which is (freedom - 1) of all
-///     this, way/dt - v = (1 - phi1)(u' - v) + (dt phi2/M)(X + W s' + B ((u' - u)/dt + g u)),
+/// Grain k in the coming step of `dt`, in the fluid that has been gathered at its start. With X all forces but drag and
+/// what depends on s' and u', L the part of X that the fluid exerts, B = C_m rho V with `virtual_mass` and W = V with
+/// `pressure_gradient` (else 0), u the velocity now, g u = u . grad u,
+///     (m + B) dv/dt = b (u' - v) + X + W s' + B ((u' - u)/dt + g u) + what contacts give: (freedom - 1) of all this.
+/// So with M = (m + B)/freedom, z = b dt/M, phi1 and phi2 of the exchange law
+///     way/dt - v = (1 - phi1)(u' - v) + (dt phi2/M)(X + W s' + B ((u' - u)/dt + g u)),
 /// and what the fluid gives is the mean of b (u' - v) + L + B ((u' - u)/dt + g u - dv/dt): with c = phi1 (1 - B/M)
 ///     c (b (u' - v) + B ((u' - u)/dt + g u)) - (1 - c)(X + W s') + L.
 /// With explicit exchange nothing is foreseen but the drag of now.

@@ -13,6 +13,7 @@ TEST(Coupled, MomentumIsKept) {
     for (const Keys& keys :
          {Keys{}, Keys{{"time.grain_step", "3e-5"}}, Keys{{"coupling.exchange", "\"implicit\""}},
           Keys{{"time.integrator", "\"damped_midpoint\""}},
+          Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"virtual_mass\"]"}},
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"saffman_mei\"]"}},
           Keys{{"coupling.forces", "[\"buoyancy\", \"pressure_gradient\", \"li_ahmadi\"]"},
                {"time.grain_step", "3e-5"}},
@@ -195,8 +196,8 @@ TEST(Coupled, BadScenesAreInputErrors) {
     refused({{"coupling.forces", "[\"buoyancy\"]"}}, {"coupling.mean_pressure_gradient", "pressure_gradient"});
     refused({{"coupling.direction", "\"one_way\""}}, {"coupling.mean_pressure_gradient", "one_way", "vector"});
     refused({{"fluid.pressure", "\"full\""}}, {"coupling.forces", "buoyancy", "full"});
-    refused({{"coupling.forces", "[\"pressure_gradient\", \"virtual_mass\"]"}},
-            {"coupling.forces", "virtual_mass", "acceleration"});
+    refused({{"coupling.forces", "[\"pressure_gradient\", \"virtual_mass\"]"}, {"fluid.pressure", "\"full\""}},
+            {"coupling.forces", "virtual_mass", "weight"});
     refused({{"fluid.operators", "\"corrected\""}}, {"coupling.direction", "plain"});
     refused({{"fluid.operators", "{law = \"variable_h\", greatest_growth = 1.01}"}},
             {"coupling.porosity_width", "eps", "greatest_growth = 1.08"});
