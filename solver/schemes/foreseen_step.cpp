@@ -46,7 +46,7 @@ ForeseenStep foreseen_step(const FluidOnGrains& f, const GrainSystem& system, do
     known += g.mass[k] * gravity;
     // B ((u' - u)/dt + g u) of the virtual mass is B/dt u' + carried
     const double added = has_virtual_mass(f) ? VirtualMass::mass(f.density, d) : 0.0;
-    const Vec3 carried = added > 0.0 ? Vec3(added * (local.gradient * local.u - local.u / dt)) : Vec3(Vec3::Zero());
+    const Vec3 moves_on = local.gradient * local.u, carried = added * (moves_on - local.u / dt);
     const double mobility = freedom * g.mobility[k];
     if (mobility < held * g.mobility[k] || mobility == 0.0) {
         const double b = resistance(slip.norm());
@@ -56,7 +56,7 @@ ForeseenStep foreseen_step(const FluidOnGrains& f, const GrainSystem& system, do
     }
     const double volume = feels_stress(f) ? sphere_volume(d) : 0.0; // on which the stress acts
     const Vec3 acceleration =
-        mobility * (known + volume * f.at_grains.stress[id] + added * (local.gradient * local.u)); // nothing changes
+        mobility * (known + volume * f.at_grains.stress[id] + added * moves_on); // nothing changes
     std::visit(
         [&](const auto& exchange) {
             const double rate = mid_step_rate(
@@ -68,7 +68,7 @@ ForeseenStep foreseen_step(const FluidOnGrains& f, const GrainSystem& system, do
             one.hands_on = (1.0 - share) * volume;
             one.follows = 1.0 - w.phi1 + w.phi2 * mobility * added;
             one.yields = dt * w.phi2 * mobility * volume;
-            one.drift = dt * w.phi2 * mobility * (known + added * (local.gradient * local.u)) - (1.0 - w.phi1) * slip;
+            one.drift = dt * w.phi2 * mobility * (known + added * moves_on) - (1.0 - w.phi1) * slip;
         },
         f.exchange);
     return one;
