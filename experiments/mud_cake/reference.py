@@ -21,8 +21,8 @@ UNITS = {
 }
 WITHIN = {"pressure": 0.1, "rise": 0.25, "height": 0.15}  # of Table 7, as the single rows are judged
 TWELVE = "n12_d08_single"  # whose clean pressure is the reference pressure of all with the same cells
-MEMBERS = ("", "_member_2", "_member_3", "_member_4")  # of a study on the strip
-FINE = "fine_"  # of the variants with cells of half the width
+MEMBERS = ("", "member_2_", "member_3_", "member_4_")  # before the names of the studies on the strip
+FINE, SHORT = "fine_", "short_"  # before the names of the rows with cells of half the width, steps of half the length
 ROWS = {row.name: row for row in mud_cake.rows()}
 INJECTED = 0.8  # s, of injection in Table 7
 
@@ -230,14 +230,15 @@ def measure(quantity, run):
 
 def unchanged(run):
     """The variant of the whole width that one differs from in one thing."""
-    return run.variant.removeprefix(FINE) if run.variant.startswith(FINE) else "n16_d06_single"
+    bare = run.variant.removeprefix(FINE).removeprefix(SHORT)
+    return bare if bare != run.variant else "n16_d06_single"
 
 
 def changes(run, value):
     """Of a value by what the variant changes, relative; by member where it has several."""
     if not run.variant.startswith("strip"):
         return [value(run) / value(run.other(unchanged(run))) - 1.0]
-    return [value(run.other(run.variant + one)) / value(run.other("strip" + one)) - 1.0 for one in MEMBERS]
+    return [value(run.other(one + run.variant)) / value(run.other(one + "strip")) - 1.0 for one in MEMBERS]
 
 
 # --- tables and figures ---
@@ -316,7 +317,7 @@ def figures(runs):
 def studies(runs):
     """What each study on the strip changes: [(name, figure, caption)], nothing where no study is."""
     names = {run.variant for run in runs}
-    done = [run for run in runs if run.variant.startswith("strip_") and "member" not in run.variant and run.variant + MEMBERS[-1] in names]
+    done = [run for run in runs if run.variant.startswith("strip_") and MEMBERS[-1] + run.variant in names]
     found = {run.variant.removeprefix("strip_").replace("_", " "): (changes(run, final_pressure), changes(run, lambda one: Bed(one).height)) for run in done}
     return [("studies", studies_figure(found), "What each study on the strip changes: four members (grey), mean and standard error.")] if found else []
 

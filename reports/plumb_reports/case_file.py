@@ -6,7 +6,7 @@ from pathlib import Path
 from .bisection_file import WorkPrecision, read_bisections, read_work_precision
 from .metrics import ENSEMBLE, METRICS
 from .presets import preset_overrides
-from .strict import CaseError, is_number, toml_table
+from .strict import NAME_PATTERN, CaseError, is_number, toml_table
 
 TIERS = ("quick", "full", "campaign")
 REFERENCES = ("analytic", "manufactured", "measured", "published")
@@ -167,32 +167,41 @@ def read_variants(table, sweep, folder):
     """The variants; a single one called "default" when the case names none."""
     variants = []
     for entry in table.tables("variant"):
-        name = entry.name("name")
-        entry.where = f"[[variant]] '{name}'"
         most = len(sweep.values) if sweep else 0
-        overrides = {**base_overrides(entry, variants), **preset_overrides(entry, folder), **entry.dictionary("set", {})}
-        variant = Variant(name, overrides, entry.flag("sweep", True),
-                          entry.integer("values", None, lowest=1, highest=most))
+        bases = read_bases(entry, variants)
+        own = {**preset_overrides(entry, folder), **entry.dictionary("set", {})}
+        swept, values = entry.flag("sweep", True), entry.integer("values", None, lowest=1, highest=most)
         entry.finish()
-        if variant.values and not variant.swept:
+        if values and not swept:
             raise entry.error("values", "is given, but the variant is not swept")
-        if any(v.name == name for v in variants):
-            raise entry.error("name", "is used twice")
-        if sweep and variant.swept and sweep.parameter in variant.overrides:
-            raise entry.error("set", f"sets the sweep parameter {sweep.parameter}; say sweep = false as well")
-        variants.append(variant)
+        for name, overrides in bases.items():
+            variant = Variant(name, {**overrides, **own}, swept, values)
+            if any(v.name == name for v in variants):
+                raise entry.error("name", f"{name!r} is used twice")
+            if sweep and swept and sweep.parameter in variant.overrides:
+                raise entry.error("set", f"sets the sweep parameter {sweep.parameter}; say sweep = false as well")
+            variants.append(variant)
     return tuple(variants) or (Variant("default"),)
 
 
-def base_overrides(entry, variants):
-    """Scene overrides of the earlier variant that a [[variant]] names as its `base`, {} if it names none."""
-    name = entry.text("base", None)
-    if name is None:
-        return {}
+def read_bases(entry, variants):
+    """{name: scene overrides of its base} of the variants that a [[variant]] stands for: itself, or with a * in its name one for
+    each of the earlier variants that `base` names, whose names take the place of the *."""
     known = {variant.name: variant.overrides for variant in variants}
-    if name not in known:
-        raise entry.error("base", f"is {name!r}; variants before it are {', '.join(known) or 'none'}")
-    return known[name]
+    stem = entry.text("name")
+    bases = entry.matching("base", known) if "base" in entry.values else ()
+    if "*" not in stem:
+        name = entry.name("name")
+        entry.where = f"[[variant]] '{name}'"
+        if len(bases) > 1:
+            raise entry.error("name", "has no * to stand for its bases, which are several")
+        return {name: known[bases[0]] if bases else {}}
+    entry.where = f"[[variant]] '{stem}'"
+    if stem.count("*") > 1 or not NAME_PATTERN.match(stem.replace("*", "x")):
+        raise entry.error("name", "has one * in what is a name otherwise")
+    if not bases:
+        raise entry.error("base", "is missing; it says what the * stands for")
+    return {stem.replace("*", base): known[base] for base in bases}
 
 
 def read_checks(table, reference, variants, sweep):
@@ -222,7 +231,7 @@ def read_check(entry, reference, variants):
     check = Check(
         id=identity, quantity=entry.text("quantity"), metric=entry.text("metric", choices=METRICS),
         why=entry.text("why"), reference=entry.text("reference", reference, choices=REFERENCES),
-        variants=entry.texts("variants", tuple(v.name for v in variants), choices=[v.name for v in variants]),
+        variants=entry.matching("variants", [v.name for v in variants]) if "variants" in entry.values else tuple(v.name for v in variants),
         tiers=entry.texts("tiers", tuple(judged), choices=TIERS), finest=finest, range=value_range, order=order,
         window=entry.interval("window", None), not_met=read_not_met(entry))
     entry.finish()

@@ -1,5 +1,6 @@
 """A strict view of a TOML table: every key must be known, present, of the right type, and read."""
 
+import fnmatch
 import math
 import re
 import tomllib
@@ -118,6 +119,18 @@ class Table:
             if value not in choices:
                 raise self.error(key, f"names {value!r}; known are {', '.join(choices)}")
         return tuple(values)
+
+    def matching(self, key, known):
+        """Those of `known` that a name, or a list of names, stands for, each once and in the order named. A name may have the
+        wildcards of a shell (* ? [abc]); one that matches nothing is an error."""
+        value = self.value(key)
+        found = {}
+        for name in value if isinstance(value, list) and value else [value]:
+            matches = [one for one in known if fnmatch.fnmatchcase(one, name)] if isinstance(name, str) else []
+            if not matches:
+                raise self.error(key, f"names {name!r}; known are {', '.join(known) or 'none'}")
+            found.update(dict.fromkeys(matches))
+        return tuple(found)
 
     def dictionary(self, key, default=REQUIRED):
         """A non-empty table whose keys are free (overrides of the scene)."""

@@ -60,7 +60,28 @@ def test_a_base_gives_its_overrides(case):
                 '[[variant]]\nname = "b"\nbase = "a"\nset = {"fake.drift" = 0.02}\n')
     assert read_case(case.folder).variant("b").overrides == {"fake.tau": 0.1, "fake.drift": 0.02}
     case.edit("case.toml", 'base = "a"', 'base = "c"')
-    with pytest.raises(CaseError, match="'base' is 'c'; variants before it are a"):
+    with pytest.raises(CaseError, match="'base' names 'c'; known are a"):
+        read_case(case.folder)
+
+
+def test_a_star_stands_for_every_base(case):
+    case.append("case.toml", '[[variant]]\nname = "a1"\nset = {"fake.tau" = 0.1, "fake.drift" = 0.01}\n'
+                '[[variant]]\nname = "a2"\nset = {"fake.tau" = 0.2}\n'
+                '[[variant]]\nname = "fine_*"\nbase = ["a?"]\nset = {"fake.drift" = 0.02}\n')
+    case.edit("case.toml", 'why = "The trap', 'variants = ["fine_*", "a1"]\nwhy = "The trap')
+    read = read_case(case.folder)
+    assert [v.name for v in read.variants] == ["a1", "a2", "fine_a1", "fine_a2"]
+    assert read.variant("fine_a2").overrides == {"fake.tau": 0.2, "fake.drift": 0.02}
+    assert read.check("velocity").variants == ("fine_a1", "fine_a2", "a1")
+
+
+@pytest.mark.parametrize("name, base, problem", [
+    ("fine", '["a", "b"]', "'name' has no \\* to stand for"), ("fine_*", None, "'base' is missing"), ("*_*", '"a"', "'name' has one \\*"),
+    ("fine_*", '"c*"', "'base' names 'c\\*'"), ("fine_*", "3", "'base' names 3"), ("fine_*", "[]", "'base' names")])
+def test_what_a_star_cannot_stand_for(case, name, base, problem):
+    of = f"base = {base}\n" if base else ""
+    case.append("case.toml", f'[[variant]]\nname = "a"\n[[variant]]\nname = "b"\n[[variant]]\nname = "{name}"\n{of}set = {{"fake.drift" = 0.02}}\n')
+    with pytest.raises(CaseError, match=problem):
         read_case(case.folder)
 
 
