@@ -25,6 +25,12 @@ Vec3 direction(Table& table, std::string_view key) {
 
 Plane::Plane(Table& table) : point(components(table, "point")), normal(direction(table, "normal")) {}
 
+BoredPlane::BoredPlane(Table& table)
+    : point(components(table, "point")), normal(direction(table, "normal")), sideways(normal.unitOrthogonal()),
+      radius(table.number("radius", positive)) {
+    if (table.length("point") == 2) table.fail("shape", "\"bored_plane\" in a scene of two dimensions");
+}
+
 namespace {
 
 /// Faces of a box from its table; none across the plane.
@@ -80,6 +86,13 @@ std::vector<WallBody> make_walls(std::vector<Table>& tables, int dimensions) {
         walls.push_back(WallBody{std::move(name), std::move(shape), velocity});
     }
     return walls;
+}
+
+std::vector<Table> walls_that_hold(const std::vector<Table>& tables, std::string_view what) {
+    std::vector<Table> holding;
+    for (Table table : tables)
+        if (!table.has("holds") || table.choice("holds", {"fluid", "grains"}) == what) holding.push_back(table);
+    return holding;
 }
 
 } // namespace plumb

@@ -36,6 +36,34 @@ struct Plane {
     }
 };
 
+/// The half space on the side of `normal` and a round bore through what is behind it: a floor with an inlet. The rim is
+/// sharp.
+struct BoredPlane {
+    static constexpr std::string_view name = "bored_plane";
+    static constexpr LawInfo info{"distance to the nearest point of plane, rim or bore, negative in the solid",
+                                  "any centre", "-"};
+    explicit BoredPlane(Table& table);
+    Vec3 point;    // where the axis of the bore meets the plane [m]
+    Vec3 normal;   // unit vector into the domain, along the axis
+    Vec3 sideways; // a unit vector across it, where no other is defined
+    double radius; // of the bore [m]
+
+    template <class Visit> void touch(const Vec3& x, double reach, Visit&& visit) const {
+        const double height = normal.dot(x - point);
+        const Vec3 across = x - point - height * normal;
+        const double r = across.norm(), outside = r - radius;
+        const Vec3 outward = r > 0.0 ? Vec3(across / r) : sideways;
+        const bool over_plane = outside >= 0.0 && (height >= 0.0 || -height < outside);
+        WallPoint nearest{normal, height, 0};
+        if (!over_plane && height < 0.0) nearest = {-outward, -outside, 0};
+        if (!over_plane && height >= 0.0) {
+            const double to_rim = std::hypot(outside, height);
+            nearest = {(height * normal + outside * outward) / to_rim, to_rim, 0};
+        }
+        if (nearest.distance < reach) visit(nearest);
+    }
+};
+
 /// The inside of an axis-aligned box. Elements 0 to 5 are the faces at lower x, upper x, lower y, ... upper z.
 struct Box {
     static constexpr std::string_view name = "box";
@@ -118,7 +146,7 @@ struct SolidBox {
     }
 };
 
-using Wall = std::variant<Plane, Box, SolidBox, Cylinder, SphereWall, CylinderRows, TriangleMesh>;
+using Wall = std::variant<Plane, BoredPlane, Box, SolidBox, Cylinder, SphereWall, CylinderRows, TriangleMesh>;
 
 /// One wall of the scene. It moves without turning: at time t it is displaced by velocity * t.
 struct WallBody {
@@ -134,9 +162,12 @@ struct WallBody {
     }
 };
 
-/// The walls of all [[wall]] tables: `name`, `shape` with its keys, and `velocity` (at rest when absent). In two
+/// The walls of all [[wall]] tables: `name`, `shape` with its keys, `velocity` (at rest when absent). In two
 /// dimensions places have two numbers and a cylinder stands across the plane. `contact` and `slip` are left to their
 /// readers. InputError for a name used twice and as the shapes say.
 std::vector<WallBody> make_walls(std::vector<Table>& tables, int dimensions = 3);
+
+/// Those of the [[wall]] tables that hold this, "fluid" or "grains": all but those that say they hold the other.
+std::vector<Table> walls_that_hold(const std::vector<Table>& tables, std::string_view what);
 
 } // namespace plumb

@@ -75,10 +75,38 @@ void tabulate_porosity(Weights& w, const GrainPlaces& grains) {
             std::lower_bound(volumes.begin(), volumes.end(), grains.volume[j]) - volumes.begin());
 }
 
+namespace {
+
+/// eps of the buffers of open sides, on the planes.
+template <class Profile> void set_porosity_of_buffers(SphFluid& f, const Weights& w, const Profile& profile) {
+    BoundaryParticles& b = f.boundary;
+    for_each_group(w.open_member.size() / pack_width, [&](std::size_t group) {
+        std::array<Pack, 3> x{};
+        for (std::size_t lane = 0; lane < pack_width; ++lane) {
+            const auto k = static_cast<std::size_t>(w.open_member[pack_width * group + lane]);
+            const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
+            const Vec3 place(b.x[0][k], b.x[1][k], b.x[2][k]), on_plane = place - side.distance(place) * side.normal;
+            for (std::size_t c = 0; c < 3; ++c) x[c][static_cast<int>(lane)] = on_plane[static_cast<Eigen::Index>(c)];
+        }
+        Pack sum{};
+        for (const std::int32_t record : w.open_near.near(group)) {
+            const auto r = static_cast<std::size_t>(record);
+            const CouplingRecord& j = w.records[r];
+            sum += profile(same_table(w, r), apart(x[0], x[1], x[2], j).r) * broadcast<Pack>(j.volume);
+        }
+        for (std::size_t lane = 0; lane < pack_width; ++lane) // copies in the last group write the same
+            b.eps[static_cast<std::size_t>(w.open_member[pack_width * group + lane])] =
+                std::max(1.0 - profile.factor * sum[static_cast<int>(lane)], least_porosity);
+    });
+}
+
+} // namespace
+
 std::int64_t set_porosity(SphFluid& f, const Weights& w) {
     f.eps.resize(f.slots());
     std::atomic<std::int64_t> clamped{0};
     with_profile(w, [&](const auto& profile) {
+        set_porosity_of_buffers(f, w, profile);
         for_each_group(f.clusters.count, [&](std::size_t cluster) {
             Pack sum{};
             for_grains_near(w, w.porosity_lists(), f, cluster,

@@ -116,15 +116,50 @@ template <class Value> void write_records(Weights& w, const Domain& domain, Valu
 }
 
 /// Numbers of the tables by record.
-void list_tables(Weights& w) {
+void list_tables(Weights& w, const MirroredGrains& mirrored) {
     w.table_of.assign(w.tables.size() > 0 ? w.records.size() : 0, 0);
     if (w.table_of.empty()) return;
     for (std::size_t k = 0; k < w.id.size(); ++k)
         if (w.id[k] >= 0)
             w.table_of[static_cast<std::size_t>(w.grains.record_of[k])] =
                 w.table_of_grain[static_cast<std::size_t>(w.id[k])];
+    for (std::size_t q = 0; q < mirrored.size(); ++q)
+        w.table_of[static_cast<std::size_t>(w.grains.record_of_passive[q])] =
+            w.table_of_grain[static_cast<std::size_t>(mirrored.of[q].grain)];
     for (std::size_t r = 0; r < w.table_of.size(); ++r)
         w.table_of[r] = w.table_of[static_cast<std::size_t>(w.grains.image_of[r])];
+}
+
+/// Lists of the grains near the planes of open sides, where the ways of their buffers' particles meet them.
+void list_open_sides(Weights& w, const SphFluid& f, double reach) {
+    const BoundaryParticles& b = f.boundary;
+    w.open_member.clear();
+    for (std::size_t k = 0; k < b.size(); ++k)
+        if (b.side[k] >= 0) w.open_member.push_back(static_cast<std::int32_t>(k));
+    w.open_near.parts.clear();
+    if (w.open_member.empty()) return;
+    while (w.open_member.size() % pack_width != 0) w.open_member.push_back(w.open_member.back());
+    std::array<std::vector<double>, 3> places;
+    for (const std::int32_t member : w.open_member) {
+        const auto k = static_cast<std::size_t>(member);
+        const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
+        const Vec3 x(b.x_listed[0][k], b.x_listed[1][k], b.x_listed[2][k]),
+            on_plane = x - side.distance(x) * side.normal;
+        for (std::size_t c = 0; c < 3; ++c) places[c].push_back(on_plane[static_cast<Eigen::Index>(c)]);
+    }
+    list_records(w.open_near, w.grains.grid, places, 3, reach, {});
+}
+
+/// Lists of the fluid's particles near mirrored grains.
+void list_mirrors(Weights& w, const SphFluid& f, double reach) {
+    w.fluid_near_mirrors.parts.clear();
+    const std::vector<Vec3>& x = w.mirrored_listed;
+    if (x.empty()) return;
+    std::array<std::vector<double>, 3> places;
+    for (std::size_t q = 0; q < x.size() || q % pack_width != 0; ++q)
+        for (std::size_t c = 0; c < 3; ++c)
+            places[c].push_back(x[std::min(q, x.size() - 1)][static_cast<Eigen::Index>(c)]);
+    list_records(w.fluid_near_mirrors, f.clusters.grid, places, 3, reach, f.clusters.passive);
 }
 
 } // namespace
@@ -141,7 +176,7 @@ bool outdated(const Weights& w, const Domain& domain, const GrainPlaces& grains)
 void renew_weights(Weights& w, const SphFluid& f, const GrainPlaces& grains) {
     const std::size_t n = grains.size();
     w.x_listed.resize(n);
-    VectorField x, none;
+    VectorField x, mirrored;
     for (std::size_t c = 0; c < 3; ++c) x[c].resize(n);
     std::vector<std::int32_t> id(n);
     for (std::size_t j = 0; j < n; ++j) {
@@ -155,20 +190,32 @@ void renew_weights(Weights& w, const SphFluid& f, const GrainPlaces& grains) {
     w.grains.skin = f.clusters.skin;
     const double box = f.domain.size.prod();
     const double spacing = std::max(f.spacing, std::cbrt(box / static_cast<double>(std::max<std::size_t>(n, 1))));
-    const ClusterOrder order = arrange(w.grains, {x, id, none}, f.domain, std::min(spacing, furthest));
+    w.mirrored_listed.clear();
+    for (const Vec3& place : grains.mirrored.x) w.mirrored_listed.push_back(f.domain.wrapped(place));
+    for (std::size_t c = 0; c < 3; ++c)
+        for (const Vec3& place : w.mirrored_listed) mirrored[c].push_back(place[static_cast<Eigen::Index>(c)]);
+    const ClusterOrder order = arrange(w.grains, {x, id, mirrored}, f.domain, std::min(spacing, furthest));
     renew_size(w.records, w.grains.grid.records());
     w.id.resize(order.from.size());
     for (std::size_t k = 0; k < w.id.size(); ++k) w.id[k] = order.copy[k] != 0 ? -1 : order.from[k];
     w.sum.assign(w.id.size(), 0.0);
     w.gather_sum.assign(w.id.size(), 0.0);
     if (w.table_of_grain.size() != n) tabulate_porosity(w, grains);
-    list_tables(w);
+    list_tables(w, grains.mirrored);
     const double exchange = exchange_reach(w) + skin, porosity = porosity_reach(w) + skin;
     const std::array<std::vector<double>, 3> fluid_places = lane_places(f.clusters, 3);
     list_records(w.fluid_near, f.clusters.grid, lane_places(w.grains, 3), 3, exchange, f.clusters.passive);
-    list_records(w.grains_near, w.grains.grid, fluid_places, 3, exchange, {});
+    list_records(w.grains_near, w.grains.grid, fluid_places, 3, exchange, w.grains.passive);
     w.porosity_near.parts.clear();
-    if (porosity > exchange) list_records(w.porosity_near, w.grains.grid, fluid_places, 3, porosity, {});
+    w.fluid_far.parts.clear();
+    list_open_sides(w, f, porosity);
+    if (f.shares_pressure) {
+        if (porosity > exchange)
+            list_records(w.fluid_far, f.clusters.grid, lane_places(w.grains, 3), 3, porosity, f.clusters.passive);
+        list_mirrors(w, f, porosity);
+    }
+    if (porosity > exchange || grains.mirrored.size() > 0)
+        list_records(w.porosity_near, w.grains.grid, fluid_places, 3, porosity, {});
     w.slot_of_record.assign(f.clusters.records.size(), -1);
     for (std::size_t k = 0; k < f.slots(); ++k)
         if (f.id[k] >= 0)
@@ -186,6 +233,11 @@ void place_grains(Weights& w, const Domain& domain, const GrainPlaces& grains) {
         const Vec3 x = w.x_listed[j] + domain.minimum_image(grains.x[j] - w.x_listed[j]);
         w.records[static_cast<std::size_t>(w.grains.record_of[slot])] = {x[0], x[1], x[2], grains.volume[j],
                                                                          0.0,  0.0,  0.0,  0.0};
+    });
+    parallel_for(grains.mirrored.size(), [&](std::size_t q) {
+        const Vec3 x = w.mirrored_listed[q] + domain.minimum_image(grains.mirrored.x[q] - w.mirrored_listed[q]);
+        w.records[static_cast<std::size_t>(w.grains.record_of_passive[q])] = {
+            x[0], x[1], x[2], grains.mirrored.volume[q], 0.0, 0.0, 0.0, 0.0};
     });
     update_images(w.grains, w.records, domain);
 }

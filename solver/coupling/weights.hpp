@@ -7,6 +7,7 @@
 #pragma once
 
 #include "core/vec.hpp"
+#include "coupling/mirrored_grains.hpp"
 #include "coupling/porosity_laws.hpp"
 #include "coupling/radial_table.hpp"
 #include "sph/fluid.hpp"
@@ -24,6 +25,7 @@ struct CouplingWidths {
 struct GrainPlaces {
     std::vector<Vec3> x;        // [m], inside the box or not
     std::vector<double> volume; // [m3]
+    MirroredGrains mirrored;    // in walls, where the scene says so
     std::size_t size() const { return x.size(); }
 };
 
@@ -46,8 +48,13 @@ struct Weights {
     Field<CouplingRecord> records;
     std::vector<std::int32_t> id;             // [slots] of the grain, -1 in the copies that fill a group
     std::vector<Vec3> x_listed;               // by id: where the grains were when the lists were built, in the box [m]
+    std::vector<Vec3> mirrored_listed;        // by mirror, likewise
     NeighbourLists fluid_near, grains_near;   // records of the fluid near groups of grains, and the other way round
-    NeighbourLists porosity_near;             // records of grains near groups of the fluid, if that reaches further
+    NeighbourLists porosity_near;             // likewise with mirrored grains, if there are any or it reaches further
+    NeighbourLists fluid_near_mirrors;        // records of the fluid near groups of mirrored grains
+    NeighbourLists fluid_far;                 // and near groups of grains, if the porosity reaches further
+    NeighbourLists open_near;                 // of grains, mirrored ones too, near the planes of open sides
+    std::vector<std::int32_t> open_member;    // [lanes of open_near] particle of a buffer; the last group is filled up
     std::vector<std::int32_t> slot_of_record; // of the fluid's particle behind a record
     Field<double> sum, gather_sum;            // S_j of the spreading and of the gathering kernel, by slot
     Field<double> load;                       // mass of grains over mass of fluid, by slot of the fluid
@@ -56,6 +63,7 @@ struct Weights {
     std::vector<std::int32_t> table_of;       // [records]; empty without tables
 
     const NeighbourLists& porosity_lists() const { return porosity_near.parts.empty() ? grains_near : porosity_near; }
+    const NeighbourLists& fluid_near_porosity() const { return fluid_far.parts.empty() ? fluid_near : fluid_far; }
 };
 
 /// What the fluid is at the grains, by id.
@@ -90,8 +98,9 @@ void place_grains(Weights& weights, const Domain& domain, const GrainPlaces& gra
 /// Tables of the porosity's law for all grains, whose sizes never change.
 void tabulate_porosity(Weights& weights, const GrainPlaces& grains);
 
-/// eps_a = 1 - sum_j V_j G(|x_a - x_j|) at every particle of the fluid; returns how many were below what the densest
-/// packing of equal spheres leaves, 1 - pi/sqrt 18, and were set to it.
+/// eps_a = 1 - sum_j V_j G(|x_a - x_j|) at every particle of the fluid, and for those of the buffers of open sides
+/// where their way meets the plane; returns how many were below what the densest packing of equal spheres leaves, 1 -
+/// pi/sqrt 18, and were set to it.
 std::int64_t set_porosity(SphFluid& fluid, const Weights& weights);
 
 /// Takes out of the fluid fractions gathered at the grains what each has taken from its own: V_j sum_a P_aj G(|x_a -

@@ -110,6 +110,47 @@ RandomPlaces::RandomPlaces(Table& table)
     read_region(table, lower, upper);
 }
 
+JitteredPlaces::JitteredPlaces(Table& table)
+    : number(table.integer("count", 1, static_cast<std::int64_t>(most_grains))),
+      spacing(table.number("spacing", positive)), jitter(table.number("jitter", non_negative)),
+      seed(table.integer("seed")), table_(table) {
+    read_region(table, lower, upper);
+}
+
+std::vector<Vec3> JitteredPlaces::operator()(const Site& site, const std::vector<double>& radius) const {
+    const double largest = 2.0 * *std::max_element(radius.begin(), radius.end());
+    if (2.0 * jitter > spacing - largest)
+        table_.fail("jitter", fmt::format("{} m leaves grains of {} m that are {} m apart no room: at most {:.4g} m",
+                                          jitter, largest, spacing, 0.5 * (spacing - largest)));
+    const double edge = std::sqrt(2.0) * spacing;
+    const auto cells = [&](Eigen::Index c) {
+        return static_cast<std::int64_t>(std::ceil((upper[c] - lower[c]) / edge));
+    };
+    if (static_cast<double>(cells(0)) * static_cast<double>(cells(1)) * static_cast<double>(cells(2)) > most_grains)
+        table_.fail("spacing", fmt::format("{} makes more than {:g} places", spacing, most_grains));
+    Random random = random_stream(seed, Stream::places);
+    const std::vector<Vec3> in_cell = places_in_cell("fcc");
+    std::vector<Vec3> x;
+    for (std::int64_t k = 0; k < cells(2); ++k)
+        for (std::int64_t j = 0; j < cells(1); ++j)
+            for (std::int64_t i = 0; i < cells(0); ++i)
+                for (const Vec3& in : in_cell) {
+                    if (x.size() == radius.size()) return x;
+                    Vec3 away = Vec3::Constant(2.0);
+                    while (away.norm() > 1.0)
+                        for (Eigen::Index c = 0; c < 3; ++c) away[c] = random.uniform(-1.0, 1.0);
+                    const Vec3 cell(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
+                    const Vec3 place = lower + edge * (cell + in) + jitter * away;
+                    bool taken = (place.array() < lower.array()).any() || (place.array() >= upper.array()).any();
+                    for (const WallBody& wall : site.walls)
+                        wall.touch(place, radius[x.size()], 0.0, [&](const WallPoint&) { taken = true; });
+                    if (!taken) x.push_back(place);
+                }
+    if (x.size() < radius.size())
+        table_.fail("count", fmt::format("{} grains, and {} places that no wall touches", number, x.size()));
+    return x;
+}
+
 void RandomPlaces::fail(std::size_t reached, const std::vector<double>& radius) const {
     double solid = 0.0;
     for (std::size_t i = 0; i < reached; ++i) solid += sphere_volume(2.0 * radius[i]);

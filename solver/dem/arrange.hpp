@@ -91,6 +91,26 @@ private:
     [[noreturn]] void fail(std::size_t reached, const std::vector<double>& radius) const;
 };
 
+/// A loose close packing whose points are moved at random, as far as leaves grains apart, and left out where a wall is:
+/// for columns too dense for random addition, to be let settle.
+struct JitteredPlaces {
+    static constexpr std::string_view name = "jittered";
+    static constexpr LawInfo info{"fcc, centres `spacing` apart, each moved within a ball of radius jitter; the lowest "
+                                  "`count` that no wall touches",
+                                  "2 jitter <= spacing - diameter; solid fraction up to 0.74 (diameter/spacing)^3",
+                                  "-"};
+    explicit JitteredPlaces(Table& table);
+    std::int64_t number;
+    double spacing, jitter; // [m]
+    Vec3 lower, upper;      // [m]
+    std::int64_t seed;
+    std::size_t count(const Domain& /*domain*/) const { return static_cast<std::size_t>(number); }
+    std::vector<Vec3> operator()(const Site& site, const std::vector<double>& radius) const;
+
+private:
+    Table table_;
+};
+
 /// A CSV file with the columns x, y, z [m], and diameter [m] or vx, vy, vz [m/s] if the laws of sizes or velocities say
 /// so.
 struct FilePlaces {
@@ -104,7 +124,7 @@ struct FilePlaces {
     }
 };
 
-using Arrangement = std::variant<NoGrains, SingleGrain, Lattice, RandomPlaces, FilePlaces>;
+using Arrangement = std::variant<NoGrains, SingleGrain, Lattice, RandomPlaces, JitteredPlaces, FilePlaces>;
 
 /// Reads all [grains] tables in turn: appends to `groups` and `grains`. Keys: name (required if there are several),
 /// density, diameter, rotation (true when absent), motion ("free" when absent), arrange, velocity and angular_velocity

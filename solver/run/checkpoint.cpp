@@ -54,7 +54,7 @@ private:
     void load_boundary(BoundaryParticles& boundary, int dimensions) const;
     void load_sph(SphFluid& fluid) const;
     void load_grid(GridFluid& fluid) const;
-    void load_coupling(Coupling& coupling, const SphFluid& fluid) const;
+    void load_coupling(Coupling& coupling, const SphFluid& fluid, const GrainSystem& grains) const;
     void load_coupling(GridCoupling& coupling, std::size_t n) const;
     void load_outputs(Run& run, const nlohmann::json& saved) const;
 
@@ -181,7 +181,7 @@ void Loader::load_grid(GridFluid& f) const {
     f.greatest_residual = doubles("grid/residual", 1)[0];
 }
 
-void Loader::load_coupling(Coupling& coupling, const SphFluid& fluid) const {
+void Loader::load_coupling(Coupling& coupling, const SphFluid& fluid, const GrainSystem& grains) const {
     read_field("coupling/x_listed", coupling.places.x, coupling.places.size());
     const std::vector<std::int64_t> counts = integers("coupling/counts", 2);
     coupling.clamped = counts[0], coupling.at_greatest = counts[1];
@@ -189,6 +189,7 @@ void Loader::load_coupling(Coupling& coupling, const SphFluid& fluid) const {
         coupling.self->memory = file_.doubles("coupling/wakes");
         demand(coupling.self->memory.size() == coupling.places.size() * wake_size(), "coupling/wakes");
     }
+    choose_mirrors(coupling, fluid, grains);
     renew_weights(coupling.weights, fluid, coupling.places);
 }
 
@@ -244,7 +245,7 @@ Run Loader::load() {
     if (run.simulation.sph) load_sph(*run.simulation.sph);
     if (run.simulation.grid) load_grid(*run.simulation.grid);
     if (!run.simulation.fluid_alone()) load_grains(system);
-    if (run.simulation.coupling) load_coupling(*run.simulation.coupling, *run.simulation.sph);
+    if (run.simulation.coupling) load_coupling(*run.simulation.coupling, *run.simulation.sph, system);
     if (run.simulation.grid_coupling) load_coupling(*run.simulation.grid_coupling, system.grains.size());
     if (run.simulation.fluid) load_fluid(*run.simulation.fluid, system.grains.size());
     load_outputs(run, saved);

@@ -9,7 +9,7 @@
 
 namespace plumb {
 
-inline constexpr std::int64_t format_version = 5; // to be raised with every change of the layout or of what it means
+inline constexpr std::int64_t format_version = 6; // to be raised with every change of the layout or of what it means
 inline constexpr const char* format_name = "plumb checkpoint";
 
 /// Fields of the smoothed particles in the order of ids; `visit` takes a name and the field.
@@ -43,6 +43,8 @@ template <class Boundary, class Visit> void for_each_boundary_field(Boundary& b,
     visit("sph/boundary/mean_speed", b.mean_speed);
     visit("sph/boundary/mean_pressure", b.mean_pressure);
     visit("sph/boundary/rho", b.rho);
+    visit("sph/boundary/share", b.share);
+    visit("sph/boundary/eps", b.eps);
 }
 
 /// Calls visit(name, field) for the state of the fluid on a grid.

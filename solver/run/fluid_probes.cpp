@@ -1,6 +1,7 @@
 #include "run/fluid_probes.hpp"
 
 #include "grid/sums.hpp"
+#include "sph/vector_at.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -104,16 +105,36 @@ double FluidVelocityWave::operator()(const Sample& s) const {
                             [&](double u, double x) { return u * (sine ? std::sin(k * x) : std::cos(k * x)); });
 }
 
+namespace {
+
+/// Of the particles in a box, each as much as the room it takes; not a number when there is none [Pa].
+double mean_pressure(const SphFluid& f, const Vec3& lower, const Vec3& upper) {
+    double sum = 0.0, volume = 0.0;
+    for (const std::int32_t slot : ordered_slots(f)) {
+        const auto k = static_cast<std::size_t>(slot);
+        const Vec3 x = vector_at(f.x, k, f.dimensions);
+        if ((x.array() < lower.array()).any() || (x.array() >= upper.array()).any()) continue;
+        const double own = f.among_grains() ? f.rho[k] * f.share[k] / f.eps[k] : f.rho[k];
+        sum += pressure(f, own) / f.rho[k];
+        volume += 1.0 / f.rho[k];
+    }
+    return sum / volume;
+}
+
+} // namespace
+
 FluidMeanPressure::FluidMeanPressure(Table& table)
     : lower(place(table, "lower", -std::numeric_limits<double>::infinity())),
       upper(place(table, "upper", std::numeric_limits<double>::infinity())) {}
 void FluidMeanPressure::bind(const Simulation& s, const Table& t) const {
-    demand_grid(s, t);
+    demand_computed_fluid(s, t);
+    if (s.sph) return;
     int cells = 0;
     for_each_cell(*s.grid, lower, upper, [&](const Place& /*p*/, std::size_t /*k*/) { ++cells; });
     if (cells == 0) t.fail("upper", "no open cell has its centre between `lower` and `upper`");
 }
 double FluidMeanPressure::operator()(const Sample& s) const {
+    if (s.simulation.sph) return mean_pressure(*s.simulation.sph, lower, upper);
     const GridFluid& f = *s.simulation.grid;
     double sum = 0.0, volume = 0.0;
     for_each_cell(f, lower, upper, [&](const Place& p, std::size_t k) {

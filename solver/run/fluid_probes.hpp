@@ -49,11 +49,13 @@ struct FluidVelocityWave {
     double operator()(const Sample& s) const;
 };
 
-/// Keys `lower`, `upper`: a box; the cells whose centres lie in it.
+/// Keys `lower`, `upper`: a box; the particles, or the cells whose centres, lie in it.
 struct FluidMeanPressure {
     static constexpr std::string_view name = "fluid_mean_pressure", units = "Pa";
-    static constexpr LawInfo info{"mean of p over the open volume of the cells with centres from `lower` to `upper`",
-                                  "grid", "definition"};
+    static constexpr LawInfo info{
+        "mean of p over the room of particles, or the open volume of cells with centres, from "
+        "`lower` to `upper`",
+        "sph and grid", "definition"};
     Vec3 lower, upper;
     explicit FluidMeanPressure(Table& table);
     void bind(const Simulation& s, const Table& t) const;

@@ -1,6 +1,7 @@
 #include "schemes/advance_coupled.hpp"
 
 #include "core/parallel.hpp"
+#include "coupling/room_pressure.hpp"
 #include "schemes/advance_fluid.hpp"
 
 namespace plumb {
@@ -22,16 +23,22 @@ void set_places(Coupling& c, const GrainSystem& system, double ahead) {
 }
 
 /// Lists that hold for the places, and the porosity there.
-void find_porosity(Coupling& c, SphFluid& fluid, bool new_lists) {
-    if (new_lists || outdated(c.weights, fluid.domain, c.places)) renew_weights(c.weights, fluid, c.places);
+void find_porosity(Coupling& c, SphFluid& fluid, const GrainSystem& system, bool new_lists) {
+    if (new_lists || outdated(c.weights, fluid.domain, c.places)) {
+        choose_mirrors(c, fluid, system);
+        renew_weights(c.weights, fluid, c.places);
+    } else {
+        place_mirrors(c.places.mirrored, system.walls, c.places.x, c.places.volume);
+    }
     place_grains(c.weights, fluid.domain, c.places);
     c.clamped += set_porosity(fluid, c.weights);
 }
 
 /// What the fluid has received from every grain per second over the step, by id: the reaction of what the grain
 /// received, without what came from the outside, buoyancy in a hydrostatic pressure that the scene leaves out and a
-/// mean gradient [N].
-std::vector<Vec3> force_on_fluid(const FluidOnGrains& f, const GrainSystem& system, double dt) {
+/// mean gradient, and without the pressure's force where the fluid has its part of that already [N].
+std::vector<Vec3> force_on_fluid(const Coupling& c, const FluidOnGrains& f, const GrainSystem& system,
+                                 bool stress_is_returned, double dt) {
     const Grains& g = system.grains;
     std::vector<Vec3> force(g.size());
     parallel_for(g.size(), [&](std::size_t k) {
@@ -44,6 +51,7 @@ std::vector<Vec3> force_on_fluid(const FluidOnGrains& f, const GrainSystem& syst
         }
         force[id] = force_from_outside(f, 2.0 * g.radius[k], system.domain.gravity) -
                     (alone ? Vec3(f.forcing.impulse[k] / dt) : f.last_fluid_force[id]);
+        if (stress_is_returned) force[id] += c.places.volume[id] * f.at_grains.stress[id];
     });
     return force;
 }
@@ -82,29 +90,39 @@ void remember_own(Coupling& c, const FluidOnGrains& f, const GrainSystem& system
 
 } // namespace
 
+void choose_mirrors(Coupling& c, const SphFluid& fluid, const GrainSystem& system) {
+    choose_mirrors(c.places.mirrored, system.walls, c.places.x, c.places.volume,
+                   porosity_reach(c.weights) + fluid.clusters.skin);
+}
+
 void couple(Coupling& c, SphFluid& fluid, const GrainSystem& grains, bool displaced) {
     fluid.share.assign(fluid.slots(), 1.0);
     fluid.clusters.images = reach(c.weights);
     renew_lists(fluid);
     set_places(c, grains, 0.0);
-    find_porosity(c, fluid, true);
-    if (displaced) fluid.share = fluid.eps;
+    find_porosity(c, fluid, grains, true);
+    if (!displaced) return;
+    fluid.share = fluid.eps;
+    fluid.boundary.share = fluid.boundary.eps;
 }
 
 void advance_coupled(Coupling& c, SphFluid& fluid, FluidOnGrains& at_grains, GrainSystem& grains, double dt,
                      std::int64_t step) {
     const bool new_lists = go_to_middle(fluid, dt, step);
     set_places(c, grains, 0.5 * dt);
-    find_porosity(c, fluid, new_lists);
+    find_porosity(c, fluid, grains, new_lists);
     evaluate_middle(fluid, dt, step);
     c.at_greatest += add_suspension_viscosity(fluid, c.weights, c.viscosity);
+    if (fluid.shares_pressure) add_room_pressure(fluid, c.weights);
     c.clamped += gather(c.weights, fluid, c.mass, c.two_way, at_grains.at_grains);
+    if (fluid.shares_pressure)
+        gather_room_pressure(c.weights, fluid, c.places.mirrored, grains.walls, c.places.x, at_grains.at_grains.stress);
     take_out_own(c, grains, at_grains.at_grains);
 
     advance_gathered(at_grains, grains, dt, step, c.grain_steps);
 
     if (c.two_way) {
-        const std::vector<Vec3> force = force_on_fluid(at_grains, grains, dt);
+        const std::vector<Vec3> force = force_on_fluid(c, at_grains, grains, fluid.shares_pressure, dt);
         spread(fluid, c.weights, force);
         remember_own(c, at_grains, grains, force, dt);
     }

@@ -30,6 +30,9 @@ struct Coupling {
 /// the grains have displaced fluid) or that of pure fluid. The fluid's initial state is there; start() comes after.
 void couple(Coupling& coupling, SphFluid& fluid, const GrainSystem& grains, bool displaced);
 
+/// The mirrors of the grains' places in the walls, for new lists.
+void choose_mirrors(Coupling& coupling, const SphFluid& fluid, const GrainSystem& grains);
+
 /// Advances both by one step of the fluid; `step` counts from 1. Readable as the scheme:
 ///     fluid and grains to the middle of the step, porosity there, accelerations of the fluid without the grains'
 ///     forces, the fluid gathered at the grains (less their own disturbance), the grains' step under its forces, their

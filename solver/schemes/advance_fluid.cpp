@@ -64,6 +64,7 @@ void fill_records(SphFluid& f, double half, double since) {
                 });
                 const double own = grains ? rho * f.share[k] / f.eps[k] : rho;
                 record.p_over_rho_sq = law.pressure(own, f.density, f.sound_speed) / (rho * rho);
+                if (f.shares_pressure) record.p_over_rho_sq *= f.eps[k];
                 record.volume = f.mass / rho;
                 f.clusters.records[static_cast<std::size_t>(f.clusters.record_of[k])] = record;
             });
@@ -162,7 +163,10 @@ void stop_at_walls(SphFluid& f, double dt, std::int64_t step) {
     std::atomic<std::int64_t> put_back{0};
     parallel_for(f.slots(), [&](std::size_t k) {
         const Vec3 x = vector_at(f.x, k, f.dimensions), v = vector_at(f.v, k, f.dimensions);
-        const Penetration p = penetration(f.walls, x, time, 2.0 * f.spacing);
+        Penetration p = penetration(f.walls, x, time, 2.0 * f.spacing);
+        for (const OpenSide& side : f.open_sides) // nothing goes out through an inlet
+            if (side.is_inlet() && -side.distance(x) > p.depth)
+                p = {-side.distance(x), side.normal, side.inflow(x, f.dimensions) * side.normal};
         if (p.depth <= allowed) return;
         if (!f.free_surface && p.depth >= f.spacing)
             throw Diverged(step, dt * static_cast<double>(step), "fluid position", f.id[k], p.depth,
@@ -181,6 +185,7 @@ void stop_at_walls(SphFluid& f, double dt, std::int64_t step) {
 } // namespace
 
 bool go_to_middle(SphFluid& f, double dt, std::int64_t step) {
+    set_openings(f.open_sides, (static_cast<double>(step) - 0.5) * dt);
     move_boundary(f, 0.5 * dt);
     const bool leaves = drift(f, 0.5 * dt) || f.boundary.travelled > 0.5 * f.clusters.skin;
     if (!leaves) return false;

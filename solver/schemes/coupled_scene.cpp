@@ -50,6 +50,32 @@ void read_self_disturbance(Table& coupling, Coupling& c, const SphFluid& fluid, 
     c.self->memory.assign(r.size() * wake_size(), 0.0);
 }
 
+/// Whether walls mirror the grains' room. Without the key they do not: a kernel that reaches behind a wall leaves some
+/// of it there.
+void read_walls(Table& coupling, Coupling& c, const GrainSystem& grains) {
+    const char* const key = "at_walls";
+    c.places.mirrored.wanted = coupling.has(key) && coupling.choice(key, {"mirrored", "cut"}) == "mirrored";
+    if (!c.places.mirrored.wanted) return;
+    for (const WallBody& wall : grains.walls)
+        if (!has_mirror(wall.shape) || wall.velocity.norm() > 0.0)
+            coupling.fail(key, fmt::format("\"mirrored\" knows planes, boxes, cylinders and spheres at rest, and wall "
+                                           "\"{}\" is none of them",
+                                           wall.name));
+}
+
+/// How the pressure acts on grains. Without the key they gather its gradient and hand their part on.
+void read_pressure_force(Table& coupling, const Coupling& c, SphFluid& fluid) {
+    const char* const key = "pressure_force";
+    fluid.shares_pressure = coupling.has(key) && coupling.choice(key, {"shared", "gathered"}) == "shared";
+    if (!fluid.shares_pressure) return;
+    if (!std::holds_alternative<KernelPorosity>(c.weights.porosity))
+        coupling.fail(key, "\"shared\" needs porosity = \"kernel\"");
+    if (c.self) coupling.fail(key, "\"shared\" and self_disturbance: the wake's pressure is not known to its theory");
+    const std::vector<std::string> forces = coupling.texts("forces");
+    if (std::find(forces.begin(), forces.end(), "pressure_gradient") == forces.end())
+        coupling.fail(key, "\"shared\" needs \"pressure_gradient\" among the forces: the fluid has only its own part");
+}
+
 /// The closure for the fluid's viscosity among the grains, or `none`.
 void read_suspension_viscosity(Table& coupling, Coupling& c, const SphFluid& fluid) {
     const char* const key = "suspension_viscosity";
@@ -93,8 +119,7 @@ double largest_diameter(const GrainSystem& system) {
     return d;
 }
 
-Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem& grains) {
-    if (!fluid.open_sides.empty()) coupling.fail("direction", "grains know no open sides yet");
+Coupling read_coupling(Table& coupling, SphFluid& fluid, const GrainSystem& grains) {
     if (std::holds_alternative<CorrectedOperators>(fluid.operators))
         coupling.fail("direction", "grains need fluid.operators = \"plain\" or \"variable_h\"");
     if (fluid.extras.diffusion > 0.0)
@@ -104,6 +129,7 @@ Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem
     c.two_way = coupling.choice("direction", {"two_way", "one_way"}) == "two_way";
     c.weights.kernel = make_family<Kernel>(coupling.law("kernel"));
     c.weights.porosity = make_family<PorosityLaw>(coupling.law("porosity"));
+    read_walls(coupling, c, grains);
     c.weights.own_volume = coupling.choice("own_volume", {"included", "excluded"}) == "included";
     if (by_diameter(c.weights.porosity)) check_number_of_sizes(coupling, grains);
     c.weights.largest_diameter = largest_diameter(grains);
@@ -123,7 +149,10 @@ Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem
         coupling.fail(
             "kernel_width",
             fmt::format("the kernel reaches {:.4g} m, less than the radius of a grain of {:.4g} m", least, d));
+    if (c.places.mirrored.wanted)
+        prepare_mirrors(c.places.mirrored, grains.walls, {c.weights.kernel, c.weights.h.porosity});
     read_self_disturbance(coupling, c, fluid, grains);
+    read_pressure_force(coupling, c, fluid);
     read_suspension_viscosity(coupling, c, fluid);
     check_periodic_sides(fluid.domain, reach(c.weights) + fluid.clusters.skin, coupling.file());
     return c;

@@ -13,7 +13,7 @@ namespace plumb {
 double largest_diameter(const GrainSystem& grains);
 
 /// Kernels, their widths and the direction.
-Coupling read_coupling(Table& coupling, const SphFluid& fluid, const GrainSystem& grains);
+Coupling read_coupling(Table& coupling, SphFluid& fluid, const GrainSystem& grains);
 
 /// InputError when smoothing lengths that follow the density would be cut off among the grains; after couple(), which
 /// finds the porosity.

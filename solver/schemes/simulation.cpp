@@ -58,7 +58,7 @@ Integrator read_integrator(Table& time) {
 
 void read_grain_system(Table& root, GrainSystem& system) {
     if (system.domain.dimensions != 3) root.fail("domain", "grains need a box of three dimensions");
-    std::vector<Table> wall_tables = root.tables("wall");
+    std::vector<Table> wall_tables = walls_that_hold(root.tables("wall"), "grains");
     std::vector<Table> grain_tables = root.tables("grains");
     if (grain_tables.empty()) root.fail("grains", "missing; expected one [grains] table or several [[grains]]");
     system.walls = make_walls(wall_tables);
@@ -172,7 +172,7 @@ void refuse_grain_tables(const Table& root) {
 /// The fluid on a grid, without what grains there may be.
 void make_grid(Table& root, Simulation& s) {
     Table fluid = root.table("fluid"), time = root.table("time");
-    std::vector<Table> wall_tables = root.tables("wall"), inlets = root.tables("inlet"),
+    std::vector<Table> wall_tables = walls_that_hold(root.tables("wall"), "fluid"), inlets = root.tables("inlet"),
                        outlets = root.tables("outlet");
     s.grid = read_grid_fluid(fluid, s.grains.domain, read_fluid_walls(wall_tables, s.grains.domain), inlets, outlets);
     s.grid->second_order = time.choice("integrator", {"implicit_euler", "bdf2"}) == "bdf2";
@@ -216,7 +216,7 @@ void make_grid_coupled(Table& root, Simulation& s) {
 /// Smoothed particles, without what grains there may be.
 void make_sph(Table& root, Simulation& s) {
     Table fluid = root.table("fluid");
-    std::vector<Table> wall_tables = root.tables("wall");
+    std::vector<Table> wall_tables = walls_that_hold(root.tables("wall"), "fluid");
     std::vector<Table> inlets = root.tables("inlet"), outlets = root.tables("outlet");
     s.sph = read_sph_fluid(fluid, s.grains.domain, read_fluid_walls(wall_tables, s.grains.domain),
                            read_open_sides(inlets, outlets, s.grains.domain));

@@ -174,7 +174,9 @@ void set_initial_state(Table& table, SphFluid& f) {
         table.fail("arrange", "there is no place for the fluid: every place of the lattice is behind a wall, beyond an "
                               "open side or not in `fill`");
     line_walls(f);
-    fill_buffers(f);
+    if (const auto narrow = fill_buffers(f))
+        table.fail("spacing",
+                   fmt::format("no row of particles fits into the open side \"{}\"", f.open_sides[*narrow].name));
     check_enclosed(table, f);
     const auto initial = make_family<InitialField>(table.law("initial"));
     if (std::holds_alternative<ManufacturedField>(initial)) check_manufactured_box(table, "initial", f.domain.size);
@@ -231,10 +233,16 @@ std::vector<OpenSide> read_open_sides(std::vector<Table>& inlets, std::vector<Ta
     for (Table& table : inlets) {
         sides.push_back(read_open_side(table, domain));
         sides.back().profile = make_family<InletProfile>(table.law("profile"));
+        if (table.has("flow_rate")) sides.back().flow_rate = table.number("flow_rate", positive);
+        if (!table.has("opens")) continue;
+        Table opens = table.table("opens");
+        sides.back().opens_from = opens.number("from", non_negative);
+        sides.back().opens_over = opens.number("over", non_negative);
     }
     for (Table& table : outlets) {
         sides.push_back(read_open_side(table, domain));
         sides.back().pressure = table.number("pressure");
+        if (table.has("even")) sides.back().even = table.flag("even");
     }
     return sides;
 }

@@ -40,8 +40,9 @@ std::vector<std::int32_t> sorted_mirrors(const SphFluid& f, const VectorField& m
 
 Vec3 lane_of(const std::array<Pack, 3>& packs, int lane) { return {packs[0][lane], packs[1][lane], packs[2][lane]}; }
 
-FluidRecord record_of(const SphFluid& f, const Vec3& x, const Vec3& u, double p) {
-    const double rho = density_of_pressure(f, p);
+/// `packing`: eps over share, what the density of the fluid itself is over that of the pure fluid in as much room.
+FluidRecord record_of(const SphFluid& f, const Vec3& x, const Vec3& u, double p, double packing = 1.0) {
+    const double rho = density_of_pressure(f, p) * packing;
     return {x[0], x[1], x[2], p / (rho * rho), u[0], u[1], u[2], f.mass / rho};
 }
 
@@ -66,32 +67,40 @@ void follow(double& mean, double value, double share) {
 /// mirror point send p' + rho c u' with the flow and p' - rho c u' against it. What leaves goes on into the buffer,
 /// nothing comes back. The means are the profile and the pressure of the fluid, continued linearly, at an inlet; the
 /// velocity of the fluid and a pressure antisymmetric about the given one at an outlet. Also sets how the particle
-/// moves.
+/// moves. Among grains a profile is superficial, and as much mass comes in whatever room the grains leave.
 FluidRecord open_record(SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane, double since) {
     BoundaryParticles& b = f.boundary;
     const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
     const double direction = side.is_inlet() ? 1.0 : -1.0, impedance = f.density * f.sound_speed;
     const Vec3 e = direction * side.normal, x = vector_at(b.x, k, f.dimensions), fluid_u = lane_of(group.u, lane);
     const double speed = fluid_u.dot(e);
+    const double part = f.shares_pressure ? b.eps[k] : 1.0; // of the pressure that records hold
     const double p =
-        group.p[lane] +
-        (side.is_inlet() ? lane_of(group.p_slope, lane).dot(Vec3(x - vector_at(b.mirror, k, f.dimensions))) : 0.0);
+        (group.p[lane] +
+         (side.is_inlet() ? lane_of(group.p_slope, lane).dot(Vec3(x - vector_at(b.mirror, k, f.dimensions))) : 0.0)) /
+        part;
     const double share = -std::expm1(-since / side.averaging_time);
     follow(b.mean_speed[k], speed, share);
     follow(b.mean_pressure[k], p, share);
     // the wave that leaves: against the flow at an inlet, with it at an outlet
     const double wave = 0.5 * (p - b.mean_pressure[k] - direction * impedance * (speed - b.mean_speed[k]));
     const double mean_p = side.is_inlet() ? b.mean_pressure[k] : 2.0 * side.pressure - b.mean_pressure[k];
-    const double mean_u = side.is_inlet() ? side.inflow(x, f.dimensions) : b.mean_speed[k];
-    double along = mean_u - direction * wave / impedance;
-    if (!side.is_inlet()) along = std::max(along, 0.0); // the buffer of an outlet gives nothing back
+    double mean_u = side.even ? side.mean_outflow : b.mean_speed[k];
+    if (side.is_inlet()) {
+        mean_u = side.inflow(x, f.dimensions) / b.eps[k];
+        b.share[k] = b.eps[k];
+    }
+    double along = side.opening > 0.0 ? mean_u - direction * wave / impedance : 0.0; // closed: a wall
+    if (!side.is_inlet() && !side.even) along = std::max(along, 0.0); // what has gone out by itself does not come back
     const Vec3 u = (side.is_inlet() ? Vec3(Vec3::Zero()) : Vec3(fluid_u - speed * e)) + along * e;
     const Vec3 mirrored = u - 2.0 * u.dot(e) * e;
     for (int c = 0; c < f.dimensions; ++c) {
         b.velocity[static_cast<std::size_t>(c)][k] = u[c];
         b.mirror_velocity[static_cast<std::size_t>(c)][k] = mirrored[c];
     }
-    return record_of(f, x, u, mean_p + wave);
+    FluidRecord record = record_of(f, x, u, side.opening > 0.0 ? mean_p + wave : p, b.eps[k] / b.share[k]);
+    record.p_over_rho_sq *= part;
+    return record;
 }
 
 } // namespace
@@ -114,6 +123,8 @@ void append_boundary_particle(BoundaryParticles& b, int dimensions, const Bounda
     b.mean_speed.push_back(unknown);
     b.mean_pressure.push_back(unknown);
     b.rho.push_back(unknown);
+    b.share.push_back(1.0);
+    b.eps.push_back(1.0);
     b.fastest = std::max(b.fastest, particle.velocity.norm());
 }
 
@@ -131,6 +142,8 @@ void keep_boundary_particles(BoundaryParticles& b, int dimensions, const std::ve
     keep(b.mean_speed);
     keep(b.mean_pressure);
     keep(b.rho);
+    keep(b.share);
+    keep(b.eps);
 }
 
 namespace {
@@ -212,8 +225,27 @@ void list_mirrors(SphFluid& f) {
                  f.clusters.passive);
 }
 
+namespace {
+
+/// Outflow of the sides that let it out evenly: the mean of the slow means of their buffers.
+void set_even_outflow(SphFluid& f) {
+    for (std::size_t s = 0; s < f.open_sides.size(); ++s) {
+        if (!f.open_sides[s].even) continue;
+        double sum = 0.0, count = 0.0;
+        for (std::size_t k = 0; k < f.boundary.size(); ++k) {
+            if (f.boundary.side[k] != static_cast<std::int32_t>(s) || std::isnan(f.boundary.mean_speed[k])) continue;
+            sum += f.boundary.mean_speed[k];
+            count += 1.0;
+        }
+        f.open_sides[s].mean_outflow = count > 0.0 ? sum / count : 0.0;
+    }
+}
+
+} // namespace
+
 void continue_state(SphFluid& f, double since) {
     BoundaryParticles& b = f.boundary;
+    set_even_outflow(f);
     const auto continue_group = [&](std::size_t g) {
         std::array<Pack, 3> places{};
         for (std::size_t lane = 0; lane < pack_width; ++lane)

@@ -30,6 +30,9 @@ struct BoundaryParticles {
     VectorField excess;             // the latter less the former, at present [m/s]
     // of open sides: slow means at the mirror point of the velocity along the flow and of the pressure; NaN until known
     Field<double> mean_speed, mean_pressure;
+    // of open sides among grains: mass over that of a particle of pure fluid, and the fluid fraction at the plane; else
+    // 1
+    Field<double> share, eps;
     Field<double> rho;      // of the last evaluation [kg/m3]
     double fastest = 0.0;   // greatest of the velocities [m/s]
     double travelled = 0.0; // way of the fastest one since the lists were built [m]

@@ -38,6 +38,7 @@ struct SphFluid {
     double shifting = 0.0;           // diffusivity of positions [m2/s], 0 without
     bool free_surface = false;       // particles near one are not shifted
     bool keeps_mean_density = false; // of a closed volume: see keep_mean_density
+    bool shares_pressure = false;    // with grains: eps p of a particle is the fluid's (coupling/room_pressure.hpp)
     double memory = 0.0;             // share of the rates before the last ones in the predictor (advance_fluid.hpp)
 
     // what changes in time

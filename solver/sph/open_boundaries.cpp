@@ -36,20 +36,29 @@ void append(SphFluid& f, std::size_t side, const Vec3& x, const Vec3& velocity) 
                               {}});
 }
 
-/// Particles of inlet buffers that have come in leave a copy of themselves in the fluid and go back to the far end.
+/// Particles of inlet buffers that have come in leave a copy of themselves in the fluid and go back to the far end;
+/// those of outlets that a wave has brought back become fluid again.
 void let_in(SphFluid& f) {
     BoundaryParticles& b = f.boundary;
     const double depth = buffer_depth(f);
+    std::vector<std::int32_t> kept;
     for (std::size_t k = 0; k < b.size(); ++k) {
-        if (b.side[k] < 0 || !f.open_sides[static_cast<std::size_t>(b.side[k])].is_inlet()) continue;
+        kept.push_back(static_cast<std::int32_t>(k));
+        if (b.side[k] < 0) continue;
         const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
         Vec3 x = vector_at(b.x, k, f.dimensions);
         if (side.distance(x) < 0.0) continue;
         append_particle(f, x, vector_at(b.velocity, k, f.dimensions), b.rho[k]);
+        if (f.among_grains()) f.share.back() = b.share[k];
+        if (!side.is_inlet()) {
+            kept.pop_back();
+            continue;
+        }
         x -= depth * side.normal;
         put(b.x, k, x, f.dimensions);
         put(b.mirror, k, side.reflected(x), f.dimensions);
     }
+    if (kept.size() < b.size()) keep_boundary_particles(b, f.dimensions, kept);
 }
 
 /// Of the particles before `end` in the buffer of a side the one that is nearest to x across the flow, and of those in
@@ -94,6 +103,10 @@ void let_out(SphFluid& f) {
         for (const auto& [id, k] : leaving) {
             append(f, s, vector_at(f.x, k, f.dimensions), vector_at(f.v, k, f.dimensions));
             inherit_means(f, s);
+            if (f.among_grains()) {
+                f.boundary.share.back() = f.share[k];
+                f.boundary.eps.back() = f.eps[k];
+            }
             f.id[k] = -1; // vanishes with the next order of the slots
             --f.particles;
         }
@@ -120,15 +133,32 @@ bool is_outside(const std::vector<OpenSide>& sides, const Vec3& x) {
     return std::any_of(sides.begin(), sides.end(), [&](const OpenSide& s) { return s.distance(x) < 0.0; });
 }
 
-void fill_buffers(SphFluid& f) {
-    const double depth = buffer_depth(f);
+std::optional<std::size_t> fill_buffers(SphFluid& f) {
+    const double depth = buffer_depth(f), of_particle = std::pow(f.spacing, f.dimensions);
     for (std::size_t s = 0; s < f.open_sides.size(); ++s) {
-        const OpenSide& side = f.open_sides[s];
+        OpenSide& side = f.open_sides[s];
+        std::vector<Vec3> places;
         for_each_cell(f, buffer_layers(f) + 1, [&](const Vec3& x) {
             const double distance = side.distance(x);
-            if (distance >= 0.0 || distance < -depth || is_solid(f.walls, x)) return;
-            append(f, s, x, side.is_inlet() ? Vec3(side.inflow(x, f.dimensions) * side.normal) : Vec3(Vec3::Zero()));
+            if (distance < 0.0 && distance >= -depth && !is_solid(f.walls, x)) places.push_back(x);
         });
+        if (places.empty()) return s;
+        if (side.flow_rate > 0.0) {
+            double rows = 0.0; // m3/s that they bring in
+            for (const Vec3& x : places) rows += side.inflow(x, f.dimensions) * of_particle / depth;
+            side.scale = side.flow_rate / rows;
+        }
+        for (const Vec3& x : places)
+            append(f, s, x, side.is_inlet() ? Vec3(side.inflow(x, f.dimensions) * side.normal) : Vec3(Vec3::Zero()));
+    }
+    set_openings(f.open_sides, 0.0);
+    return std::nullopt;
+}
+
+void set_openings(std::vector<OpenSide>& sides, double time) {
+    for (OpenSide& side : sides) {
+        const double since = time - side.opens_from;
+        side.opening = side.opens_over > 0.0 ? std::clamp(since / side.opens_over, 0.0, 1.0) : since >= 0.0 ? 1.0 : 0.0;
     }
 }
 

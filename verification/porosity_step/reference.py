@@ -13,7 +13,7 @@ sys.path.insert(0, str(HERE))
 
 from step_waves import Step  # noqa: E402
 
-UNITS = {"risen": "1", "boundary_ratio": "1", "rest.stable": "m", "rest.unstable": "m", "rest.boundary": "m", "energy_at_end": "1",
+UNITS = {"risen": "1", "boundary_ratio": "1", "rest.stable": "m", "rest.unstable": "m", "rest.boundary": "m", "energy_at_end": "1", "energy_greatest": "1",
          "flux_missed": "1", "compressed": "1"}
 RISEN = 10.0  # of the energy over its least value before: unstable
 
@@ -113,6 +113,9 @@ def measure(quantity, run):
     if quantity == "energy_at_end":
         energy = np.ravel(run.series("energy")[1])
         return float(energy[-1] / energy[0])
+    if quantity == "energy_greatest":
+        energy = np.ravel(run.series("energy")[1])
+        return float(np.max(energy) / energy[0])
     if quantity == "compressed":
         fluid = run.scene["fluid"]
         return float(np.max(np.abs(run.snapshot(-1)["fluid"]["p"]))) / (fluid["density"] * fluid["sound_speed"] ** 2)

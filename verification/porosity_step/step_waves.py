@@ -27,9 +27,9 @@ def column(x, h, kernel, k):
 class Step:
     """A bed of planes of grains at `planes`, each with the volume `share` per area, m, in a column of `count` planes of particles."""
 
-    def __init__(self, count, spacing, h, kernel, width, planes, share, c, mu, rho, handed_on=True):
+    def __init__(self, count, spacing, h, kernel, width, planes, share, c, mu, rho, handed_on=True, shared=False):
         self.count, self.dx, self.h, self.kernel, self.width = count, spacing, h, kernel, width
-        self.share, self.c, self.mu, self.rho, self.handed_on = share, c, mu, rho, handed_on
+        self.share, self.c, self.mu, self.rho, self.handed_on, self.shared = share, c, mu, rho, handed_on, shared
         self.x = (np.arange(count) + 0.5) * spacing
         length = count * spacing
         apart = self.x[:, None] - np.asarray(planes)
@@ -53,7 +53,7 @@ class Step:
 
     def handed(self, k):
         """[count, count]: what the grains take of the force of the fluid and hand back, by planes (with the wave's aliases on the lattice)."""
-        if not self.handed_on:
+        if self.shared or not self.handed_on:
             return np.zeros((self.count, self.count))
         whole = (column(self.apart, self.width, self.kernel, 0.0) * self.dx).sum(axis=0)
         total = np.zeros((self.count, self.count))
@@ -82,7 +82,9 @@ class Step:
         matrix = np.zeros((5 * n, 5 * n), complex)
         matrix[part[0], part[1]] = np.eye(n)
         for i in range(3):
-            force = -volume * spread[i] @ pressure
+            force = -volume * spread[i] @ (self.eps[:, None] * pressure if self.shared else pressure)
+            if self.shared and i == 0:
+                force += self.slope[:, None] * pressure  # p grad eps: equation (6)
             force[:, part[1 + i]] += 2.0 * self.mu * volume * (all_f * np.eye(n) - spread[3])
             matrix[part[1 + i]] = kept @ force / (self.rho * self.eps)[:, None]
             matrix[part[4], part[1 + i]] = -self.rho * volume * spread[i]

@@ -1,0 +1,76 @@
+// Inlets of a stated flow rate that open later, through a bored floor.
+#include "sph/open_boundaries.hpp"
+
+#include "sph/vector_at.hpp"
+#include "tests/sph_scene_fixtures.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+using namespace plumb::fixture;
+using namespace plumb::fixture::sph_scene;
+
+namespace plumb {
+namespace {
+
+constexpr double flow_rate = 2e-6; // m3/s
+
+/// A cylindrical cell of water, 8 mm wide and high, with a jet through a bore of 3 mm from 10 ms on.
+std::string cell(const std::string& jet) {
+    return "[domain]\nsize = [8e-3, 8e-3, 8e-3]\nperiodic = [false, false, false]\ngravity = [0.0, 0.0, 0.0]\n"
+           "[fluid]\nmethod = \"sph\"\ndensity = 1000.0\nviscosity = 1e-2\nspacing = 1e-3\nsmoothing = 1.5\n"
+           "kernel = \"wendland_c2\"\nequation_of_state = \"linear\"\noperators = \"plain\"\nsound_speed = 4.0\n"
+           "pressure = \"dynamic\"\nviscous_term = \"morris\"\narrange = {law = \"lattice\"}\n"
+           "initial = {law = \"rest\"}\n"
+           "[[wall]]\nname = \"side\"\nshape = \"cylinder\"\nside = \"inside\"\npoint = [4e-3, 4e-3, 0.0]\n"
+           "axis = [0.0, 0.0, 1.0]\nradius = 4e-3\nslip = \"no_slip\"\n"
+           "[[wall]]\nname = \"floor\"\nshape = \"bored_plane\"\npoint = [4e-3, 4e-3, 0.0]\n"
+           "normal = [0.0, 0.0, 1.0]\nradius = 1.5e-3\nslip = \"no_slip\"\n"
+           "[[inlet]]\nname = \"jet\"\npoint = [4e-3, 4e-3, 0.0]\nnormal = [0.0, 0.0, 1.0]\naveraging_time = 0.01\n" +
+           jet +
+           "[[outlet]]\nname = \"top\"\npoint = [4e-3, 4e-3, 8e-3]\nnormal = [0.0, 0.0, -1.0]\n"
+           "averaging_time = 0.01\npressure = 0.0\n"
+           "[time]\nend = 0.2\noutput_interval = 0.1\nintegrator = \"damped_midpoint\"\nstep = 1e-4\n";
+}
+
+const std::string pipe = "profile = {law = \"parabolic\", mean_speed = 1.0, radius = 1.5e-3}\nflow_rate = 2e-6\n";
+
+} // namespace
+
+// A profile that the lattice's few rows sample, 12 of them here, brings in another flow than the one stated.
+TEST(SphInlets, BringInTheFlowRate) {
+    Bench bench(cell(pipe));
+    const SphFluid& f = bench.fluid();
+    const std::int32_t begun = f.next_id;
+    advance(bench.simulation, 2000); // 0.2 s
+    const double volume = static_cast<double>(f.next_id - begun) * f.mass / f.density;
+    EXPECT_NEAR(volume / 0.2, flow_rate, 0.03 * flow_rate);
+    EXPECT_NEAR(static_cast<double>(f.particles), static_cast<double>(begun), 0.03 * static_cast<double>(begun));
+}
+
+// A closed inlet is a wall; it opens linearly.
+TEST(SphInlets, OpenWhenTheyAreTold) {
+    Bench bench(cell(pipe + "opens = {from = 0.1, over = 0.05}\n"));
+    const SphFluid& f = bench.fluid();
+    const std::int32_t begun = f.next_id;
+    advance(bench.simulation, 999);
+    EXPECT_EQ(f.next_id, begun);
+    EXPECT_EQ(f.particles, static_cast<std::size_t>(begun));
+    for (const std::int32_t k : ordered_slots(f))
+        EXPECT_LT(vector_at(f.v, static_cast<std::size_t>(k), 3).norm(), 1e-12);
+    advance(bench.simulation, 251); // half way
+    EXPECT_NEAR(f.open_sides[0].opening, 0.5, 0.01);
+    EXPECT_NEAR(f.open_sides[0].inflow(Vec3(4e-3, 4e-3, 0.0), 3), 0.5 * f.open_sides[0].scale * 2.0, 0.02);
+    EXPECT_EQ(f.open_sides[1].opening, 1.0);
+}
+
+TEST(SphInlets, RefuseWhatCannotBe) {
+    expect_refused(cell("profile = {law = \"uniform\", speed = 1.0}\nflow_rate = 0.0\n"), {"inlet", "flow_rate"});
+    expect_refused(cell(pipe + "opens = {from = 0.1}\n"), {"opens", "over"});
+    std::string narrow = cell(pipe);
+    narrow.replace(narrow.find("radius = 1.5e-3"), 15, "radius = 0.4e-3");
+    expect_refused(narrow, {"fluid.spacing", "no row of particles", "jet"});
+}
+
+} // namespace plumb
