@@ -151,7 +151,7 @@ void list_open_sides(Weights& w, const SphFluid& f, double reach) {
 }
 
 /// Lists of the fluid's particles near mirrored grains.
-void list_mirrors(Weights& w, const SphFluid& f, double reach) {
+void list_mirrored_grains(Weights& w, const SphFluid& f, double reach) {
     w.fluid_near_mirrors.parts.clear();
     const std::vector<Vec3>& x = w.mirrored_listed;
     if (x.empty()) return;
@@ -212,7 +212,7 @@ void renew_weights(Weights& w, const SphFluid& f, const GrainPlaces& grains) {
     if (f.shares_pressure) {
         if (porosity > exchange)
             list_records(w.fluid_far, f.clusters.grid, lane_places(w.grains, 3), 3, porosity, f.clusters.passive);
-        list_mirrors(w, f, porosity);
+        list_mirrored_grains(w, f, porosity);
     }
     if (porosity > exchange || grains.mirrored.size() > 0)
         list_records(w.porosity_near, w.grains.grid, fluid_places, 3, porosity, {});

@@ -24,6 +24,13 @@ void read_region(Table& table, Vec3& lower, Vec3& upper) {
                                             axis_names[static_cast<std::size_t>(c)], upper[c], lower[c]));
 }
 
+/// Whether a grain at a place would touch a wall.
+bool touches_wall(const Site& site, const Vec3& place, double radius) {
+    bool touches = false;
+    for (const WallBody& wall : site.walls) wall.touch(place, radius, 0.0, [&](const WallPoint&) { touches = true; });
+    return touches;
+}
+
 std::vector<Vec3> places_in_cell(const std::string& kind) {
     if (kind == "cubic") return {{0.0, 0.0, 0.0}};
     if (kind == "bcc") return {{0.0, 0.0, 0.0}, {0.5, 0.5, 0.5}};
@@ -104,18 +111,14 @@ std::vector<Vec3> Lattice::operator()(const Site& site, const std::vector<double
     return x;
 }
 
-RandomPlaces::RandomPlaces(Table& table)
+CountedPlaces::CountedPlaces(Table& table)
     : number(table.integer("count", 1, static_cast<std::int64_t>(most_grains))), seed(table.integer("seed")),
       table_(table) {
     read_region(table, lower, upper);
 }
 
 JitteredPlaces::JitteredPlaces(Table& table)
-    : number(table.integer("count", 1, static_cast<std::int64_t>(most_grains))),
-      spacing(table.number("spacing", positive)), jitter(table.number("jitter", non_negative)),
-      seed(table.integer("seed")), table_(table) {
-    read_region(table, lower, upper);
-}
+    : CountedPlaces(table), spacing(table.number("spacing", positive)), jitter(table.number("jitter", non_negative)) {}
 
 std::vector<Vec3> JitteredPlaces::operator()(const Site& site, const std::vector<double>& radius) const {
     const double largest = 2.0 * *std::max_element(radius.begin(), radius.end());
@@ -141,10 +144,8 @@ std::vector<Vec3> JitteredPlaces::operator()(const Site& site, const std::vector
                         for (Eigen::Index c = 0; c < 3; ++c) away[c] = random.uniform(-1.0, 1.0);
                     const Vec3 cell(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
                     const Vec3 place = lower + edge * (cell + in) + jitter * away;
-                    bool taken = (place.array() < lower.array()).any() || (place.array() >= upper.array()).any();
-                    for (const WallBody& wall : site.walls)
-                        wall.touch(place, radius[x.size()], 0.0, [&](const WallPoint&) { taken = true; });
-                    if (!taken) x.push_back(place);
+                    const bool taken = (place.array() < lower.array()).any() || (place.array() >= upper.array()).any();
+                    if (!taken && !touches_wall(site, place, radius[x.size()])) x.push_back(place);
                 }
     if (x.size() < radius.size())
         table_.fail("count", fmt::format("{} grains, and {} places that no wall touches", number, x.size()));
@@ -182,10 +183,7 @@ std::vector<Vec3> RandomPlaces::operator()(const Site& site, const std::vector<d
             const double apart = own + r[k];
             return domain.minimum_image(place - x[k]).squaredNorm() < apart * apart;
         };
-        bool hits_wall = false;
-        for (const WallBody& wall : site.walls)
-            wall.touch(place, own, 0.0, [&](const WallPoint&) { hits_wall = true; });
-        return hits_wall || grid.any_near(place, own, overlaps);
+        return touches_wall(site, place, own) || grid.any_near(place, own, overlaps);
     };
     for (std::size_t i = 0; i < radius.size(); ++i) {
         Vec3 place = Vec3::Zero();

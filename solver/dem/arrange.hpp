@@ -71,44 +71,44 @@ private:
     Table table_; // for messages
 };
 
+/// What arrangements of a stated number of grains by chance share: how many, where and with which seed.
+struct CountedPlaces {
+    explicit CountedPlaces(Table& table);
+    std::int64_t number;
+    Vec3 lower, upper; // [m]
+    std::int64_t seed;
+    std::size_t count(const Domain& /*domain*/) const { return static_cast<std::size_t>(number); }
+
+protected:
+    Table table_; // for messages
+};
+
 /// Random sequential addition: each grain in turn takes the first of a sequence of random places where it overlaps
 /// neither a grain nor a wall.
-struct RandomPlaces {
+struct RandomPlaces : CountedPlaces {
     static constexpr std::string_view name = "random";
     static constexpr LawInfo info{"uniform in [lower, upper), drawn again on overlap",
                                   "solid fraction up to about 0.38",
                                   "Zhang & Torquato 2013, Phys. Rev. E 88, 053312 (saturation at 0.3841)"};
     static constexpr std::int64_t most_tries = 200'000; // per grain; one in 4e4 succeeds at a solid fraction of 0.36
-    explicit RandomPlaces(Table& table);
-    std::int64_t number;
-    Vec3 lower, upper; // [m]
-    std::int64_t seed;
-    std::size_t count(const Domain& /*domain*/) const { return static_cast<std::size_t>(number); }
+    using CountedPlaces::CountedPlaces;
     std::vector<Vec3> operator()(const Site& site, const std::vector<double>& radius) const;
 
 private:
-    Table table_;
     [[noreturn]] void fail(std::size_t reached, const std::vector<double>& radius) const;
 };
 
 /// A loose close packing whose points are moved at random, as far as leaves grains apart, and left out where a wall is:
 /// for columns too dense for random addition, to be let settle.
-struct JitteredPlaces {
+struct JitteredPlaces : CountedPlaces {
     static constexpr std::string_view name = "jittered";
     static constexpr LawInfo info{"fcc, centres `spacing` apart, each moved within a ball of radius jitter; the lowest "
                                   "`count` that no wall touches",
                                   "2 jitter <= spacing - diameter; solid fraction up to 0.74 (diameter/spacing)^3",
                                   "-"};
     explicit JitteredPlaces(Table& table);
-    std::int64_t number;
     double spacing, jitter; // [m]
-    Vec3 lower, upper;      // [m]
-    std::int64_t seed;
-    std::size_t count(const Domain& /*domain*/) const { return static_cast<std::size_t>(number); }
     std::vector<Vec3> operator()(const Site& site, const std::vector<double>& radius) const;
-
-private:
-    Table table_;
 };
 
 /// A CSV file with the columns x, y, z [m], and diameter [m] or vx, vy, vz [m/s] if the laws of sizes or velocities say

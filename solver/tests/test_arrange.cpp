@@ -246,5 +246,33 @@ TEST(GrainTables, AreStrict) {
     expect_fault("[grains]\n" + rest + "overlap = 'maybe'", domain, "not one of");
 }
 
+// Grains that overlap, touch a wall or are not the lowest, and a place that is the lattice's all the same.
+TEST(JitteredPlaces, AreApartAndClearOfWalls) {
+    const auto text = [](const std::string& keys) {
+        return "[grains]\ndensity = 1.0\ndiameter = 0.1\narrange = {law = 'jittered', " + keys +
+               ", lower = [0, 0, 0], upper = [1, 1, 1], seed = 3}\n"
+               "[[wall]]\nname = 'c'\nshape = 'cylinder'\nside = 'inside'\npoint = [0.5, 0.5, 0]\naxis = [0, 0, 1]\n"
+               "radius = 0.5\n[[wall]]\nname = 'f'\nshape = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n";
+    };
+    const Domain domain = box(Vec3::Constant(1.0), false);
+    const Grains few = made(text("count = 200, spacing = 0.12, jitter = 0.0099"), domain).grains,
+                 many = made(text("count = 400, spacing = 0.12, jitter = 0.0099"), domain).grains;
+    double lowest_added = 1.0, highest = 0.0;
+    for (std::size_t i = 0; i < many.size(); ++i) {
+        EXPECT_GE(many.x[i][2], 0.05);
+        EXPECT_LE(std::hypot(many.x[i][0] - 0.5, many.x[i][1] - 0.5), 0.45);
+        for (std::size_t j = 0; j < i; ++j) EXPECT_GE((many.x[i] - many.x[j]).norm(), 0.1);
+        if (i < few.size()) {
+            EXPECT_EQ(few.x[i], many.x[i]);
+            highest = std::max(highest, few.x[i][2]);
+        } else {
+            lowest_added = std::min(lowest_added, many.x[i][2]);
+        }
+    }
+    EXPECT_GT(lowest_added, highest - 0.12 * std::numbers::sqrt2); // a cell of the lattice
+    expect_fault(text("count = 200, spacing = 0.12, jitter = 0.02"), domain, "jitter");
+    expect_fault(text("count = 2000, spacing = 0.12, jitter = 0.0099"), domain, "places that no wall touches");
+}
+
 } // namespace
 } // namespace plumb

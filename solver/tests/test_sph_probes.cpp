@@ -44,6 +44,18 @@ TEST(SphScene, ProbesByHand) {
     EXPECT_NEAR(probed(wave + "\"cos\"", {}, 2, kick), 8.0 / 320.0 * std::cos(6.0 * pi * 0.275), 1e-15);
 }
 
+// Particles weighed by number instead of room, or those outside the box.
+TEST(SphScene, MeanPressureOfABox) {
+    const auto press = [](SphFluid& f) {
+        for (std::size_t k = 0; k < f.slots(); ++k) f.rho[k] = f.density * (f.x[0][k] < 0.5 ? 1.01 : 1.02);
+    };
+    const Keys linear{{"equation_of_state", "\"linear\""}}; // p = c^2 (rho - rho_0): 4000 and 8000 Pa
+    const std::string probe = "quantity = \"fluid_mean_pressure\"\n";
+    EXPECT_NEAR(probed(probe + "lower = [0.0, 0.0]\nupper = [0.5, 0.8]", linear, 2, press), 4000.0, 1e-8);
+    EXPECT_NEAR(probed(probe + "lower = [0.0, 0.0]\nupper = [1.0, 0.8]", linear, 2, press),
+                (4000.0 / 1.01 + 8000.0 / 1.02) / (1.0 / 1.01 + 1.0 / 1.02), 1e-8);
+}
+
 // The wave's amplitude is not that of the wave: sums of sin^2 over a lattice are exactly n/2.
 TEST(SphScene, WaveProbeFindsTheAmplitude) {
     for (const int d : {2, 3}) {

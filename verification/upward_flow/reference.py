@@ -18,8 +18,7 @@ def bed(scene):
     """The lattice's layers, as the kernel smooths them."""
     arrange, h = scene["grains"]["arrange"], kernel_width(scene)
     a = arrange["spacing"]
-    layers = round((arrange["upper"][2] - arrange["lower"][2]) / a + 0.49)
-    return LayeredBed(arrange["lower"][2] + a * np.arange(layers), 1.0 / a**2, scene["grains"]["diameter"], h)
+    return LayeredBed(np.arange(arrange["lower"][2], arrange["upper"][2], a), 1.0 / a**2, scene["grains"]["diameter"], h)
 
 
 def kernel_width(scene):
@@ -33,7 +32,7 @@ def law(scene):
 
 def inflow(scene, t):
     """Superficial velocity at time t, m/s."""
-    inlet = scene["inlet"][0] if isinstance(scene["inlet"], list) else scene["inlet"]
+    inlet = scene["inlet"][0]
     opens = inlet["opens"]
     return inlet["profile"]["speed"] * float(np.clip((t - opens["from"]) / opens["over"], 0.0, 1.0))
 
@@ -85,7 +84,7 @@ def reference(quantity, scene, t):
 
 
 def figures(runs):
-    """Drop over superficial velocity of the runs, the theory of the bed at rest and its weight."""
+    """Drop over superficial velocity of the runs, and the theory."""
     from matplotlib.figure import Figure
 
     runs = [run for run in runs if run.failure is None]
