@@ -5,7 +5,7 @@ import os
 import sys
 from pathlib import Path
 
-from . import baseline, outcome, pages
+from . import baseline, film, outcome, pages
 from .case_file import TIERS
 from .strict import CaseError
 
@@ -38,6 +38,11 @@ def parser():
     accept.add_argument("--tier", required=True, choices=TIERS)
     accept.add_argument("--reason", required=True, help="why the new numbers are right")
     accept.set_defaults(run=accept_baseline)
+    shown = commands.add_parser("film", help="a result as a film")
+    shown.add_argument("result", type=Path, help="folder of a run")
+    shown.add_argument("-o", "--output", required=True, type=Path, help=".gif, .webp or .png")
+    shown.add_argument("--along", choices=tuple(film.AXES), default="y", help="the axis that is looked along (default y)")
+    shown.set_defaults(run=show_film)
     for command in (judge, overview, accept):
         command.add_argument("--build", required=True, type=Path, help="build folder; results go to <build>/reports")
     return made
@@ -68,6 +73,13 @@ def refresh_overview(options):
     """overview: rewrites index.html."""
     pages.write_overview(options.build)
     print(f"page: {(options.build / 'reports' / 'index.html').resolve()}")
+    return 0
+
+
+def show_film(options):
+    """film: all snapshots of a result as an animated picture."""
+    film.write_film(options.result, options.output, options.along)
+    print(options.output.resolve())
     return 0
 
 

@@ -77,7 +77,7 @@ void tabulate_porosity(Weights& w, const GrainPlaces& grains) {
 
 namespace {
 
-/// eps of the buffers of open sides, on the planes.
+/// eps of the buffers of open sides, on the planes; behind an even outlet, a sieve, it is 1.
 template <class Profile> void set_porosity_of_buffers(SphFluid& f, const Weights& w, const Profile& profile) {
     BoundaryParticles& b = f.boundary;
     for_each_group(w.open_member.size() / pack_width, [&](std::size_t group) {
@@ -94,9 +94,11 @@ template <class Profile> void set_porosity_of_buffers(SphFluid& f, const Weights
             const CouplingRecord& j = w.records[r];
             sum += profile(same_table(w, r), apart(x[0], x[1], x[2], j).r) * broadcast<Pack>(j.volume);
         }
-        for (std::size_t lane = 0; lane < pack_width; ++lane) // copies in the last group write the same
-            b.eps[static_cast<std::size_t>(w.open_member[pack_width * group + lane])] =
-                std::max(1.0 - profile.factor * sum[static_cast<int>(lane)], least_porosity);
+        for (std::size_t lane = 0; lane < pack_width; ++lane) { // copies in the last group write the same
+            const auto k = static_cast<std::size_t>(w.open_member[pack_width * group + lane]);
+            const double eps = 1.0 - profile.factor * sum[static_cast<int>(lane)];
+            b.eps[k] = f.open_sides[static_cast<std::size_t>(b.side[k])].even ? 1.0 : std::max(eps, least_porosity);
+        }
     });
 }
 

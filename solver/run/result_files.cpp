@@ -86,7 +86,7 @@ void write_grains(Hdf5Writer& file, const Grains& g) {
 void write_fluid(Hdf5Writer& file, const SphFluid& f) {
     const std::vector<std::int32_t> slot = ordered_slots(f);
     const std::size_t n = slot.size();
-    std::vector<double> x(3 * n), v(3 * n), rho(n), p(n), eps;
+    std::vector<double> x(3 * n), v(3 * n), rho(n), p(n), eps, mass;
     std::vector<std::int32_t> id(n);
     for (std::size_t k = 0; k < n; ++k) {
         const auto s = static_cast<std::size_t>(slot[k]);
@@ -96,7 +96,7 @@ void write_fluid(Hdf5Writer& file, const SphFluid& f) {
         }
         const double share = f.among_grains() ? f.share[s] : 1.0;
         rho[k] = share * f.rho[s];
-        if (f.among_grains()) eps.push_back(f.eps[s]);
+        if (f.among_grains()) eps.push_back(f.eps[s]), mass.push_back(share * f.mass);
         p[k] = pressure(f, f.among_grains() ? rho[k] / f.eps[s] : rho[k]);
         id[k] = f.id[s];
     }
@@ -108,6 +108,8 @@ void write_fluid(Hdf5Writer& file, const SphFluid& f) {
     if (!eps.empty()) {
         file.write("fluid/eps", eps);
         file.attribute("fluid/eps", "units", std::string("1"));
+        file.write("fluid/mass", mass);
+        file.attribute("fluid/mass", "units", std::string("kg"));
     }
     for (const auto& [name, units] : {std::pair{"x", "m"}, {"v", "m/s"}, {"rho", "kg/m3"}, {"p", "Pa"}, {"id", "1"}})
         file.attribute(fmt::format("fluid/{}", name), "units", std::string(units));
@@ -162,7 +164,7 @@ void write_boundary(Hdf5Writer& file, const SphFluid& f) {
             x[3 * k + c] = f.boundary.x[c][k];
             v[3 * k + c] = velocity[c];
         }
-        p[k] = r.p_over_rho_sq * (f.mass / r.volume) * (f.mass / r.volume);
+        p[k] = r.p_over_rho_sq * (f.mass / r.volume) * (f.mass / r.volume) - f.background_pressure;
     }
     file.write("walls/x", std::span<const double>(x), {n, 3});
     file.write("walls/v", std::span<const double>(v), {n, 3});

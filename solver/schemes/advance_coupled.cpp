@@ -1,6 +1,7 @@
 #include "schemes/advance_coupled.hpp"
 
 #include "core/parallel.hpp"
+#include "coupling/own_density.hpp"
 #include "coupling/room_pressure.hpp"
 #include "schemes/advance_fluid.hpp"
 
@@ -112,6 +113,7 @@ void advance_coupled(Coupling& c, SphFluid& fluid, FluidOnGrains& at_grains, Gra
     set_places(c, grains, 0.5 * dt);
     find_porosity(c, fluid, grains, new_lists);
     evaluate_middle(fluid, dt, step);
+    even_out_own_density(fluid, c.weights);
     c.at_greatest += add_suspension_viscosity(fluid, c.weights, c.viscosity);
     if (fluid.shares_pressure) add_room_pressure(fluid, c.weights);
     c.clamped += gather(c.weights, fluid, c.mass, c.two_way, at_grains.at_grains);

@@ -3,6 +3,8 @@
 #include "core/errors.hpp"
 #include "core/packed_field.hpp"
 #include "core/parallel.hpp"
+#include "sph/even_outlets.hpp"
+#include "sph/filling.hpp"
 #include "sph/vector_at.hpp"
 #include "sph/wall_particles.hpp"
 
@@ -63,8 +65,9 @@ void fill_records(SphFluid& f, double half, double since) {
                         f.v[c][k] + rate.last * f.a[c][k] + (remembers ? rate.before * f.a_before[c][k] : 0.0);
                 });
                 const double own = grains ? rho * f.share[k] / f.eps[k] : rho;
-                record.p_over_rho_sq = law.pressure(own, f.density, f.sound_speed) / (rho * rho);
-                if (f.shares_pressure) record.p_over_rho_sq *= f.eps[k];
+                const double part = f.shares_pressure ? f.eps[k] : 1.0;
+                record.p_over_rho_sq =
+                    (part * law.pressure(own, f.density, f.sound_speed) + f.background_pressure) / (rho * rho);
                 record.volume = f.mass / rho;
                 f.clusters.records[static_cast<std::size_t>(f.clusters.record_of[k])] = record;
             });
@@ -185,7 +188,7 @@ void stop_at_walls(SphFluid& f, double dt, std::int64_t step) {
 } // namespace
 
 bool go_to_middle(SphFluid& f, double dt, std::int64_t step) {
-    set_openings(f.open_sides, (static_cast<double>(step) - 0.5) * dt);
+    set_openings(f, (static_cast<double>(step) - 0.5) * dt);
     move_boundary(f, 0.5 * dt);
     const bool leaves = drift(f, 0.5 * dt) || f.boundary.travelled > 0.5 * f.clusters.skin;
     if (!leaves) return false;
@@ -199,6 +202,8 @@ void evaluate_middle(SphFluid& f, double dt, std::int64_t step) {
     fill_records(f, 0.5 * dt, dt);
     remember_rates(f);
     evaluate_terms(f);
+    follow_filling(f);
+    hold_open_pressure(f);
     keep_mean_density(f);
     add_sources(f, (static_cast<double>(step) - 0.5) * dt);
 }
@@ -221,6 +226,7 @@ void start(SphFluid& f) {
         f.a_before = f.a;
         f.drho_before = f.drho;
     }
+    f.mass_at_start = mass_inside(f);
     renew_lists(f);
     fill_records(f, 0.0, 0.0);
     evaluate_terms(f);

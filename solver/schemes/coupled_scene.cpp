@@ -67,6 +67,8 @@ void read_walls(Table& coupling, Coupling& c, const GrainSystem& grains) {
 void read_pressure_force(Table& coupling, const Coupling& c, SphFluid& fluid) {
     const char* const key = "pressure_force";
     fluid.shares_pressure = coupling.has(key) && coupling.choice(key, {"shared", "gathered"}) == "shared";
+    if (!fluid.shares_pressure && fluid.background_pressure > 0.0)
+        coupling.fail(key, "grains would feel fluid.background_pressure; it goes with \"shared\"");
     if (!fluid.shares_pressure) return;
     if (!std::holds_alternative<KernelPorosity>(c.weights.porosity))
         coupling.fail(key, "\"shared\" needs porosity = \"kernel\"");
@@ -122,8 +124,9 @@ double largest_diameter(const GrainSystem& system) {
 Coupling read_coupling(Table& coupling, SphFluid& fluid, const GrainSystem& grains) {
     if (std::holds_alternative<CorrectedOperators>(fluid.operators))
         coupling.fail("direction", "grains need fluid.operators = \"plain\" or \"variable_h\"");
-    if (fluid.extras.diffusion > 0.0)
-        coupling.fail("direction", "fluid.density_diffusion evens out the wrong density among grains: leave it out");
+    if (std::holds_alternative<VariableOperators>(fluid.operators) &&
+        (fluid.extras.diffusion > 0.0 || fluid.shifting > 0.0))
+        coupling.fail("direction", "among grains fluid.density_diffusion and shifting go with operators = \"plain\"");
     if (!grains.injectors.empty()) coupling.fail("direction", "injected grains know no smoothed particles yet");
     Coupling c;
     c.two_way = coupling.choice("direction", {"two_way", "one_way"}) == "two_way";

@@ -243,6 +243,8 @@ std::vector<OpenSide> read_open_sides(std::vector<Table>& inlets, std::vector<Ta
         sides.push_back(read_open_side(table, domain));
         sides.back().pressure = table.number("pressure");
         if (table.has("even")) sides.back().even = table.flag("even");
+        if (sides.back().even != sides[inlets.size()].even)
+            table.fail("even", "outlets that let out together what comes in have to be so all of them");
     }
     return sides;
 }
@@ -260,6 +262,11 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<Fl
     f.free_surface = table.has("free_surface") && table.flag("free_surface");
     if (f.free_surface && !f.extras.stratified && f.domain.gravity.norm() > 0.0)
         table.fail("pressure", "\"dynamic\" leaves no gravity to hold a free surface");
+    if (table.has("filling_time")) f.filling_time = table.number("filling_time", positive);
+    if (f.filling_time > 0.0 && f.free_surface) table.fail("filling_time", "a free surface is not full");
+    f.background_pressure = table.number_or("background_pressure", 0.0, non_negative);
+    if (f.background_pressure > 0.0 && f.free_surface)
+        table.fail("background_pressure", "blows up a fluid with a free surface");
     f.keeps_mean_density = table.has("keep_mean_density") && table.flag("keep_mean_density");
     if (f.keeps_mean_density && (f.free_surface || !open_sides.empty()))
         table.fail("keep_mean_density", "only a closed volume keeps its mean density");

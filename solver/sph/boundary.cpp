@@ -41,9 +41,11 @@ std::vector<std::int32_t> sorted_mirrors(const SphFluid& f, const VectorField& m
 Vec3 lane_of(const std::array<Pack, 3>& packs, int lane) { return {packs[0][lane], packs[1][lane], packs[2][lane]}; }
 
 /// `packing`: eps over share, what the density of the fluid itself is over that of the pure fluid in as much room.
-FluidRecord record_of(const SphFluid& f, const Vec3& x, const Vec3& u, double p, double packing = 1.0) {
+/// `part` of the pressure is the fluid's.
+FluidRecord record_of(const SphFluid& f, const Vec3& x, const Vec3& u, double p, double packing = 1.0,
+                      double part = 1.0) {
     const double rho = density_of_pressure(f, p) * packing;
-    return {x[0], x[1], x[2], p / (rho * rho), u[0], u[1], u[2], f.mass / rho};
+    return {x[0], x[1], x[2], (part * p + f.background_pressure) / (rho * rho), u[0], u[1], u[2], f.mass / rho};
 }
 
 FluidRecord wall_record(SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane) {
@@ -55,7 +57,7 @@ FluidRecord wall_record(SphFluid& f, std::size_t k, const InterpolatedGroup& gro
     const Vec3 excess = wet ? Vec3(slip.turn * fluid_u + slip.offset - u) : Vec3(Vec3::Zero());
     for (int c = 0; c < f.dimensions; ++c) b.excess[static_cast<std::size_t>(c)][k] = excess[c];
     const Vec3 away = f.domain.minimum_image(x - vector_at(b.mirror, k, f.dimensions));
-    return record_of(f, x, u, wet ? group.p[lane] + f.density * f.body_force.dot(away) : 0.0);
+    return record_of(f, x, u, wet ? group.p[lane] - f.background_pressure + f.density * f.body_force.dot(away) : 0.0);
 }
 
 /// Moves a mean towards a value; NaN takes the value.
@@ -66,8 +68,9 @@ void follow(double& mean, double value, double share) {
 /// State in the buffer of an open side: with e along the flow, the deviations p' and u' from the slow means at the
 /// mirror point send p' + rho c u' with the flow and p' - rho c u' against it. What leaves goes on into the buffer,
 /// nothing comes back. The means are the profile and the pressure of the fluid, continued linearly, at an inlet; the
-/// velocity of the fluid and a pressure antisymmetric about the given one at an outlet. Also sets how the particle
-/// moves. Among grains a profile is superficial, and as much mass comes in whatever room the grains leave.
+/// velocity of the fluid and a pressure antisymmetric about the given one at an outlet. At an even one both are as at
+/// an inlet, so that a jet which meets it is held back by its own pressure. Also sets how the particle moves. Among
+/// grains a profile is superficial, and as much mass comes in whatever room the grains leave.
 FluidRecord open_record(SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane, double since) {
     BoundaryParticles& b = f.boundary;
     const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
@@ -76,7 +79,7 @@ FluidRecord open_record(SphFluid& f, std::size_t k, const InterpolatedGroup& gro
     const double speed = fluid_u.dot(e);
     const double part = f.shares_pressure ? b.eps[k] : 1.0; // of the pressure that records hold
     const double p =
-        (group.p[lane] +
+        (group.p[lane] - f.background_pressure +
          (side.is_inlet() ? lane_of(group.p_slope, lane).dot(Vec3(x - vector_at(b.mirror, k, f.dimensions))) : 0.0)) /
         part;
     const double share = -std::expm1(-since / side.averaging_time);
@@ -84,23 +87,20 @@ FluidRecord open_record(SphFluid& f, std::size_t k, const InterpolatedGroup& gro
     follow(b.mean_pressure[k], p, share);
     // the wave that leaves: against the flow at an inlet, with it at an outlet
     const double wave = 0.5 * (p - b.mean_pressure[k] - direction * impedance * (speed - b.mean_speed[k]));
-    const double mean_p = side.is_inlet() ? b.mean_pressure[k] : 2.0 * side.pressure - b.mean_pressure[k];
-    double mean_u = side.even ? side.mean_outflow : b.mean_speed[k];
-    if (side.is_inlet()) {
-        mean_u = side.inflow(x, f.dimensions) / b.eps[k];
-        b.share[k] = b.eps[k];
-    }
+    const double mean_p = side.is_inlet() || side.even ? b.mean_pressure[k] : 2.0 * side.pressure - b.mean_pressure[k];
+    double mean_u = side.even ? side.mean_outflow / b.eps[k] : b.mean_speed[k];
+    if (side.is_inlet()) mean_u = side.inflow(x, f.dimensions) / b.eps[k];
+    if (side.is_inlet()) b.share[k] = b.eps[k];
     double along = side.opening > 0.0 ? mean_u - direction * wave / impedance : 0.0; // closed: a wall
     if (!side.is_inlet() && !side.even) along = std::max(along, 0.0); // what has gone out by itself does not come back
     const Vec3 u = (side.is_inlet() ? Vec3(Vec3::Zero()) : Vec3(fluid_u - speed * e)) + along * e;
-    const Vec3 mirrored = u - 2.0 * u.dot(e) * e;
+    const Vec3 moved = side.even ? Vec3(side.mean_outflow * e) : u; // as a lattice
+    const Vec3 mirrored = moved - 2.0 * moved.dot(e) * e;
     for (int c = 0; c < f.dimensions; ++c) {
-        b.velocity[static_cast<std::size_t>(c)][k] = u[c];
+        b.velocity[static_cast<std::size_t>(c)][k] = moved[c];
         b.mirror_velocity[static_cast<std::size_t>(c)][k] = mirrored[c];
     }
-    FluidRecord record = record_of(f, x, u, side.opening > 0.0 ? mean_p + wave : p, b.eps[k] / b.share[k]);
-    record.p_over_rho_sq *= part;
-    return record;
+    return record_of(f, x, u, side.opening > 0.0 ? mean_p + wave : p, b.eps[k] / b.share[k], part);
 }
 
 } // namespace
@@ -225,27 +225,8 @@ void list_mirrors(SphFluid& f) {
                  f.clusters.passive);
 }
 
-namespace {
-
-/// Outflow of the sides that let it out evenly: the mean of the slow means of their buffers.
-void set_even_outflow(SphFluid& f) {
-    for (std::size_t s = 0; s < f.open_sides.size(); ++s) {
-        if (!f.open_sides[s].even) continue;
-        double sum = 0.0, count = 0.0;
-        for (std::size_t k = 0; k < f.boundary.size(); ++k) {
-            if (f.boundary.side[k] != static_cast<std::int32_t>(s) || std::isnan(f.boundary.mean_speed[k])) continue;
-            sum += f.boundary.mean_speed[k];
-            count += 1.0;
-        }
-        f.open_sides[s].mean_outflow = count > 0.0 ? sum / count : 0.0;
-    }
-}
-
-} // namespace
-
 void continue_state(SphFluid& f, double since) {
     BoundaryParticles& b = f.boundary;
-    set_even_outflow(f);
     const auto continue_group = [&](std::size_t g) {
         std::array<Pack, 3> places{};
         for (std::size_t lane = 0; lane < pack_width; ++lane)

@@ -8,8 +8,10 @@ using Diffusion = std::variant<NoTerm, DensityDiffusion<false>, DensityDiffusion
 using Artificial = std::variant<NoTerm, ArtificialViscosity>;
 template <int d> using Along = std::variant<NoTerm, AlongSpread<d>>;
 
-Diffusion diffusion_of(const Extras& e) {
-    if (e.diffusion == 0.0) return NoTerm{};
+/// Among grains it is the fluid's own density that diffuses, in a pass of its own (coupling/own_density.hpp).
+Diffusion diffusion_of(const SphFluid& f) {
+    const Extras& e = f.extras;
+    if (e.diffusion == 0.0 || f.among_grains()) return NoTerm{};
     if (e.stratified) return DensityDiffusion<true>(e);
     return DensityDiffusion<false>(e);
 }
@@ -25,7 +27,7 @@ template <int d> void add_extras(const SphFluid& f, std::size_t cluster, const F
         [&](const auto&... terms) {
             add_over_neighbours<d>(f.clusters, cluster, KeptSlope{slopes.data()}, sums, terms...);
         },
-        diffusion_of(f.extras), artificial, along);
+        diffusion_of(f), artificial, along);
 }
 
 template void add_extras<2>(const SphFluid&, std::size_t, const Field<Pack>&, Sums<2>&);

@@ -35,11 +35,13 @@ struct SphFluid {
     ViscousTerm viscous_term;
     Extras extras;
     Source source;
-    double shifting = 0.0;           // diffusivity of positions [m2/s], 0 without
-    bool free_surface = false;       // particles near one are not shifted
-    bool keeps_mean_density = false; // of a closed volume: see keep_mean_density
-    bool shares_pressure = false;    // with grains: eps p of a particle is the fluid's (coupling/room_pressure.hpp)
-    double memory = 0.0;             // share of the rates before the last ones in the predictor (advance_fluid.hpp)
+    double shifting = 0.0;            // diffusivity of positions [m2/s], 0 without
+    double filling_time = 0.0;        // within which densities follow how full the room is [s], 0: never (filling.hpp)
+    bool free_surface = false;        // particles near one are not shifted
+    bool keeps_mean_density = false;  // of a closed volume: see keep_mean_density
+    bool shares_pressure = false;     // with grains: eps p of a particle is the fluid's (coupling/room_pressure.hpp)
+    double background_pressure = 0.0; // that records hold besides their own, against clumping [Pa]
+    double memory = 0.0;              // share of the rates before the last ones in the predictor (advance_fluid.hpp)
 
     // what changes in time
     VectorField x, v, a;     // position [m], velocity [m/s], acceleration of the last evaluation [m/s2]
@@ -65,6 +67,7 @@ struct SphFluid {
     VariableLengths lengths;
     std::vector<FluidWall> walls;
     std::vector<OpenSide> open_sides;
+    double mass_at_start = 0.0; // of all particles, which even outlets keep [kg]
     BoundaryParticles boundary; // of walls and open sides
 
     std::size_t slots() const { return id.size(); }

@@ -1,5 +1,7 @@
 #include "sph/open_boundaries.hpp"
 
+#include "sph/even_outlets.hpp"
+#include "sph/fluid.hpp"
 #include "sph/vector_at.hpp"
 #include "sph/wall_particles.hpp"
 
@@ -44,7 +46,7 @@ void let_in(SphFluid& f) {
     std::vector<std::int32_t> kept;
     for (std::size_t k = 0; k < b.size(); ++k) {
         kept.push_back(static_cast<std::int32_t>(k));
-        if (b.side[k] < 0) continue;
+        if (b.side[k] < 0 || f.open_sides[static_cast<std::size_t>(b.side[k])].even) continue;
         const OpenSide& side = f.open_sides[static_cast<std::size_t>(b.side[k])];
         Vec3 x = vector_at(b.x, k, f.dimensions);
         if (side.distance(x) < 0.0) continue;
@@ -91,22 +93,25 @@ void inherit_means(SphFluid& f, std::size_t side) {
     b.mean_pressure[newcomer] = b.mean_pressure[k];
 }
 
+void join_buffer(SphFluid& f, std::size_t side, std::size_t slot) {
+    append(f, side, vector_at(f.x, slot, f.dimensions), vector_at(f.v, slot, f.dimensions));
+    inherit_means(f, side);
+    if (!f.among_grains()) return;
+    f.boundary.share.back() = f.share[slot];
+    f.boundary.eps.back() = f.eps[slot];
+}
+
 /// Fluid behind an outlet becomes part of its buffer.
 void let_out(SphFluid& f) {
     for (std::size_t s = 0; s < f.open_sides.size(); ++s) {
-        if (f.open_sides[s].is_inlet()) continue;
+        if (f.open_sides[s].is_inlet() || f.open_sides[s].even) continue;
         std::vector<std::pair<std::int32_t, std::size_t>> leaving; // by id: the order of slots must not matter
         for (std::size_t k = 0; k < f.slots(); ++k)
             if (f.id[k] >= 0 && f.open_sides[s].distance(vector_at(f.x, k, f.dimensions)) < 0.0)
                 leaving.emplace_back(f.id[k], k);
         std::sort(leaving.begin(), leaving.end());
         for (const auto& [id, k] : leaving) {
-            append(f, s, vector_at(f.x, k, f.dimensions), vector_at(f.v, k, f.dimensions));
-            inherit_means(f, s);
-            if (f.among_grains()) {
-                f.boundary.share.back() = f.share[k];
-                f.boundary.eps.back() = f.eps[k];
-            }
+            join_buffer(f, s, k);
             f.id[k] = -1; // vanishes with the next order of the slots
             --f.particles;
         }
@@ -121,6 +126,7 @@ void forget_far_ones(SphFluid& f) {
         const std::int32_t s = f.boundary.side[k];
         const bool far =
             s >= 0 && !f.open_sides[static_cast<std::size_t>(s)].is_inlet() &&
+            !f.open_sides[static_cast<std::size_t>(s)].even &&
             f.open_sides[static_cast<std::size_t>(s)].distance(vector_at(f.boundary.x, k, f.dimensions)) < -depth;
         if (!far) kept.push_back(static_cast<std::int32_t>(k));
     }
@@ -143,29 +149,32 @@ std::optional<std::size_t> fill_buffers(SphFluid& f) {
             if (distance < 0.0 && distance >= -depth && !is_solid(f.walls, x)) places.push_back(x);
         });
         if (places.empty()) return s;
+        for (const Vec3& x : places)
+            side.amount += (side.is_inlet() ? side.inflow(x, f.dimensions) : 1.0) * of_particle / depth;
         if (side.flow_rate > 0.0) {
-            double rows = 0.0; // m3/s that they bring in
-            for (const Vec3& x : places) rows += side.inflow(x, f.dimensions) * of_particle / depth;
-            side.scale = side.flow_rate / rows;
+            side.scale = side.flow_rate / side.amount;
+            side.amount = side.flow_rate;
         }
         for (const Vec3& x : places)
             append(f, s, x, side.is_inlet() ? Vec3(side.inflow(x, f.dimensions) * side.normal) : Vec3(Vec3::Zero()));
     }
-    set_openings(f.open_sides, 0.0);
+    set_openings(f, 0.0);
     return std::nullopt;
 }
 
-void set_openings(std::vector<OpenSide>& sides, double time) {
-    for (OpenSide& side : sides) {
+void set_openings(SphFluid& f, double time) {
+    for (OpenSide& side : f.open_sides) {
         const double since = time - side.opens_from;
         side.opening = side.opens_over > 0.0 ? std::clamp(since / side.opens_over, 0.0, 1.0) : since >= 0.0 ? 1.0 : 0.0;
     }
+    set_even_outflow(f);
 }
 
 void pass_open_sides(SphFluid& f) {
     if (f.open_sides.empty()) return;
     let_in(f);
     let_out(f);
+    pass_even_outlets(f);
     forget_far_ones(f);
 }
 

@@ -2,10 +2,10 @@
 //
 // Behind the plane is a buffer of boundary particles as deep as the kernel reaches. They move with their velocity; one
 // that crosses an inlet becomes fluid and is replaced at the far end of the buffer, fluid that crosses an outlet
-// becomes part of its buffer. An outlet lets out what comes; where a flow recirculates, an even one has to, or the
-// fluid that would come back is lost. Sound leaves: the state in the buffer is a slow mean plus the part of the
-// deviation from it that the outgoing characteristic carries (after Lastiwka, Basa & Quinlan 2009, Int. J. Numer. Meth.
-// Fluids 61, 709).
+// becomes part of its buffer. An outlet lets out what comes; where a flow recirculates, even ones have to, or the fluid
+// that would come back is lost (even_outlets.hpp). Sound
+// leaves: the state in the buffer is a slow mean plus the part of the deviation from it that the outgoing
+// characteristic carries (after Lastiwka, Basa & Quinlan 2009, Int. J. Numer. Meth. Fluids 61, 709).
 #pragma once
 
 #include "core/inlet_profiles.hpp"
@@ -33,7 +33,8 @@ struct OpenSide {
     double pressure = 0.0;   // of an outlet [Pa]
 
     double scale = 1.0;        // of the profile, for the flow rate
-    double mean_outflow = 0.0; // of an even outlet at present [m/s]
+    double amount = 0.0;       // by the lattice: what an open inlet brings in [m3/s], how wide an outlet is [m2]
+    double mean_outflow = 0.0; // of an even outlet at present, superficial [m/s]
     double opening = 1.0;      // share of the inflow that comes in at present
 
     bool is_inlet() const { return profile.has_value(); }
@@ -50,12 +51,12 @@ struct OpenSide {
 /// True behind any of the sides.
 bool is_outside(const std::vector<OpenSide>& sides, const Vec3& x);
 
-/// Fills the buffers on the lattice of the fluid, outside the walls, and scales the profiles of inlets to their flow
-/// rates. Returns the number of a side whose buffer has no place for a particle, or none.
+/// Fills the buffers on the lattice of the fluid, outside the walls, scales the profiles of inlets to their flow rates
+/// and finds what each side amounts to. Returns the number of a side whose buffer has no place for a particle, or none.
 std::optional<std::size_t> fill_buffers(SphFluid& fluid);
 
-/// Sets how far the inlets are open at `time` [s].
-void set_openings(std::vector<OpenSide>& sides, double time);
+/// Sets how far the inlets are open at `time` [s], and what even outlets let out.
+void set_openings(SphFluid& fluid, double time);
 
 /// Particles that have crossed a plane change sides. Slots and boundary particles appear and vanish: the lists have to
 /// be renewed.

@@ -202,7 +202,8 @@ TEST(Coupled, BadScenesAreInputErrors) {
     refused({{"fluid.operators", "{law = \"variable_h\", greatest_growth = 1.01}"}},
             {"coupling.porosity_width", "eps", "greatest_growth = 1.08"});
     refused({{"fluid.operators", "{law = \"variable_h\", greatest_growth = 0.9}"}}, {"fluid.operators", "0.9"});
-    refused({{"fluid.density_diffusion", "0.1"}}, {"coupling.direction", "density_diffusion"});
+    refused({{"fluid.density_diffusion", "0.1"}, {"fluid.operators", "{law = \"variable_h\", greatest_growth = 1.3}"}},
+            {"coupling.direction", "density_diffusion", "plain"});
     refused({{"time.grain_step", ""}}, {"time.grain_step: missing"});
     refused({{"time.grain_step", "-1.0"}}, {"time.grain_step", "-1"});
     refused({{"grains.arrange", "\"none\""}}, {"grains"});

@@ -107,10 +107,27 @@ TEST(RoomPressure, MomentumAndBits) {
 
 TEST(RoomPressure, RefusesWhatItCannot) {
     const auto refused = [](Keys keys, std::initializer_list<std::string_view> parts) {
-        keys["coupling.pressure_force"] = "\"shared\"";
+        keys.emplace("coupling.pressure_force", "\"shared\"");
         expect_error([&] { CoupledBench bad(keys); }, parts);
     };
     refused({{"coupling.porosity", "\"overlap\""}}, {"coupling.pressure_force", "porosity"});
     refused({{"coupling.forces", "[\"buoyancy\"]"}, {"coupling.mean_pressure_gradient", ""}},
             {"coupling.pressure_force", "pressure_gradient"});
+    refused({{"fluid.background_pressure", "1.0"}, {"coupling.pressure_force", "\"gathered\""}},
+            {"coupling.pressure_force", "background_pressure", "shared"});
+}
+
+// A background that grains feel, or that is taken for pressure where the fluid's is read.
+TEST(RoomPressure, KnowsNoBackground) {
+    CoupledBench without(pot()), with(pot());
+    with.fluid().background_pressure = 3.0;
+    std::vector<Vec3> stress, stress_with;
+    evaluate_here(without, stress);
+    evaluate_here(with, stress_with);
+    for (std::size_t k = 0; k < stress.size(); ++k) EXPECT_LT((stress[k] - stress_with[k]).norm(), 1e-9 * 3.0 / 2e-4);
+    double felt = 0.0; // the particles do feel it: they are not on a lattice of equal volumes
+    for (std::size_t k = 0; k < with.fluid().slots(); ++k)
+        felt = std::max(felt,
+                        (entry(with.fluid(), with.fluid().a, k) - entry(without.fluid(), without.fluid().a, k)).norm());
+    EXPECT_GT(felt, 0.0);
 }

@@ -49,6 +49,22 @@ TEST(SphInlets, BringInTheFlowRate) {
     EXPECT_NEAR(volume / 0.05, flow_rate, 0.1 * flow_rate); // of 12 rows each may be half a particle ahead
 }
 
+// An even outlet that lets a jet through, or lets more out than comes in: 0.4 s, twice the cell's water, of which rows
+// by themselves lose three quarters.
+TEST(SphInlets, AnEvenOutletKeepsTheCellFull) {
+    std::string scene = cell(pipe);
+    scene.replace(
+        scene.find("viscosity = 1e-2"), 16,
+        "viscosity = 1e-2\ndensity_diffusion = 0.1\nshifting = 4.0\nreference_velocity = 0.1\nfilling_time = 0.1");
+    scene.replace(scene.find("step = 1e-4"), 11, "step = 5e-5");
+    Bench bench(scene);
+    const SphFluid& f = bench.fluid();
+    const std::size_t before = f.particles;
+    advance(bench.simulation, 8000);
+    EXPECT_GT(f.next_id - static_cast<std::int32_t>(before), 600); // 800 come in, of 400 in the cell
+    EXPECT_NEAR(static_cast<double>(f.particles), static_cast<double>(before), 0.01 * static_cast<double>(before));
+}
+
 // A closed inlet is a wall; it opens linearly.
 TEST(SphInlets, OpenWhenTheyAreTold) {
     Bench bench(cell(pipe + "opens = {from = 0.1, over = 0.05}\n"));
@@ -71,6 +87,9 @@ TEST(SphInlets, RefuseWhatCannotBe) {
     std::string narrow = cell(pipe);
     narrow.replace(narrow.find("radius = 1.5e-3"), 15, "radius = 0.4e-3");
     expect_refused(narrow, {"fluid.spacing", "no row of particles", "jet"});
+    expect_refused(cell(pipe) + "[[outlet]]\nname = \"hole\"\npoint = [4e-3, 4e-3, 8e-3]\nnormal = [0.0, 0.0, -1.0]\n"
+                                "averaging_time = 0.01\npressure = 0.0\n",
+                   {"outlet", "even"});
 }
 
 } // namespace plumb

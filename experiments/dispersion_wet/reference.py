@@ -1,0 +1,216 @@
+"""A bed of grains in a cell full of water, hit by a jet from below: what a run shows (README.md)."""
+
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import brentq
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
+
+from drag_laws.drag_laws import LAWS  # noqa: E402
+
+G = 9.81
+OPEN = 0.75  # porosity above which the axis counts as cavity: half way from a settled bed to clear water
+NEAR_AXIS = 1.5  # spacings around the axis
+UNITS = {
+    "porosity": "1",
+    "carried": "1",
+    "water_missed": "1",
+    "beyond_walls": "1",
+    "grains_lost": "1",
+    "height": "m",
+    "cavity": "m",
+    "swing": "m",
+    "top": "m",
+    "piercing": "1",
+}
+
+
+# --- the scene ---
+
+
+def cell_of(scene):
+    """Axis, radius and height of the cell, m."""
+    wall = next(w for w in scene["wall"] if w["shape"] == "cylinder")
+    return np.array(wall["point"][:2]), wall["radius"], scene["domain"]["size"][2]
+
+
+def area(scene):
+    return math.pi * cell_of(scene)[1] ** 2
+
+
+def grain_volume(scene):
+    return math.pi / 6.0 * scene["grains"]["diameter"] ** 3
+
+
+def jet_start(scene):
+    opens = scene["inlet"][0]["opens"]
+    return opens["from"] + opens["over"]
+
+
+def weight(scene):
+    """Of all grains in water, over the cell's area, Pa."""
+    grains = scene["grains"]
+    return (grains["density"] - scene["fluid"]["density"]) * G * grains["arrange"]["count"] * grain_volume(scene) / area(scene)
+
+
+def jet_reynolds(scene):
+    """On the bore's diameter and mean speed."""
+    bore = next(w["radius"] for w in scene["wall"] if w["shape"] == "bored_plane")
+    fluid = scene["fluid"]
+    return 2.0 * scene["inlet"][0]["flow_rate"] / (math.pi * bore) * fluid["density"] / fluid["viscosity"]
+
+
+def expanded_height(scene):
+    """Mean height of the grains of a uniform bed that the flow carries, m: drag law = weight; none below minimum fluidisation."""
+    grains, fluid = scene["grains"], scene["fluid"]
+    d, mu, rho = grains["diameter"], fluid["viscosity"], fluid["density"]
+    u = scene["inlet"][0]["flow_rate"] / area(scene)
+    law = LAWS[scene["coupling"]["drag"]]
+    lift = lambda eps: 3.0 * math.pi * mu * d * u * law(eps, rho * d * u / mu) / eps - (grains["density"] - rho) * G * grain_volume(scene)
+    if lift(0.38) < 0.0:
+        return None
+    eps = brentq(lift, 0.38, 0.999)
+    return 0.5 * grains["arrange"]["count"] * grain_volume(scene) / ((1.0 - eps) * area(scene))
+
+
+# --- a run ---
+
+
+def times(run):
+    return np.arange(len(run.snapshot_files())) * run.scene["time"]["output_interval"]
+
+
+def late(run):
+    """Numbers of the snapshots of the last half of the time with the full jet."""
+    t, start = times(run), jet_start(run.scene)
+    return np.nonzero(t >= start + 0.5 * (t[-1] - start))[0]
+
+
+def settled(run):
+    """Number of the last snapshot before the jet."""
+    return int(np.nonzero(times(run) <= run.scene["inlet"][0]["opens"]["from"])[0][-1])
+
+
+def part_below(z, d, level):
+    """Of the volume of spheres at z."""
+    s = np.clip((level - z) / d + 0.5, 0.0, 1.0)
+    return s * s * (3.0 - 2.0 * s)
+
+
+def porosity(run):
+    """Of the settled bed, two diameters off its floor and top and one off the wall."""
+    scene, d = run.scene, run.scene["grains"]["diameter"]
+    axis, radius, _ = cell_of(scene)
+    x = run.snapshot(settled(run))["grains"]["x"]
+    low, high = 2.0 * d, np.quantile(x[:, 2], 0.95) - 2.0 * d
+    r, inner = np.hypot(*(x[:, :2] - axis).T), radius - 2.0 * d
+    inside = r < inner  # spheres that the cylinder cuts: as many stick out as in
+    volume = np.sum(part_below(x[inside, 2], d, high) - part_below(x[inside, 2], d, low)) * grain_volume(scene)
+    return 1.0 - volume / (math.pi * inner**2 * (high - low))
+
+
+def floor_pressure(run, k):
+    """Mean pressure on the floor away from the jet, less that below the outlet, Pa: continued from the two lowest slices of a spacing."""
+    scene, fluid = run.scene, run.snapshot(k)["fluid"]
+    axis, radius, height = cell_of(scene)
+    dx, x, p = scene["fluid"]["spacing"], fluid["x"], fluid["p"]
+    volume = fluid["mass"] / fluid["rho"]
+    away = np.hypot(*(x[:, :2] - axis).T) > 0.4 * radius
+
+    def mean(low, high):
+        there = away & (x[:, 2] >= low) & (x[:, 2] < high)
+        return np.sum((p * volume)[there]) / np.sum(volume[there])
+
+    first, second = mean(0.0, dx), mean(dx, 2.0 * dx)
+    return first + 0.5 * (first - second) - mean(height - 3.0 * dx, height)
+
+
+def carried(run):
+    """Pressure under the bed over its weight, mean of the last half of the jet's time."""
+    return float(np.mean([floor_pressure(run, k) for k in late(run)])) / weight(run.scene)
+
+
+def water_missed(run):
+    """Greatest change of the mass of water in the cell since the jet began, relative."""
+    mass = np.array([np.sum(run.snapshot(k)["fluid"]["mass"]) for k in range(settled(run), len(run.snapshot_files()))])
+    return float(np.max(np.abs(mass / mass[0] - 1.0)))
+
+
+def beyond_walls(run):
+    """How deep the grains' surfaces are behind walls at most, in diameters."""
+    scene, d = run.scene, run.scene["grains"]["diameter"]
+    axis, radius, height = cell_of(scene)
+    worst = 0.0
+    for k in range(len(run.snapshot_files())):
+        x = run.snapshot(k)["grains"]["x"]
+        worst = max(worst, np.max(np.hypot(*(x[:, :2] - axis).T)) - radius, -np.min(x[:, 2]), np.max(x[:, 2]) - height)
+    return float(max(worst / d + 0.5, 0.0))
+
+
+def grains_lost(run):
+    return float(run.scene["grains"]["arrange"]["count"] - len(run.snapshot(len(run.snapshot_files()) - 1)["grains"]["id"]))
+
+
+def cavity_height(run, k):
+    """To where the axis is open from the bore on, m."""
+    scene, fluid = run.scene, run.snapshot(k)["fluid"]
+    axis, _, height = cell_of(scene)
+    dx, x = scene["fluid"]["spacing"], fluid["x"]
+    near = np.hypot(*(x[:, :2] - axis).T) < NEAR_AXIS * dx
+    edges = np.arange(0.0, height + 0.5 * dx, dx)
+    sums, counts = (np.histogram(x[near, 2], edges, weights=w)[0] for w in (fluid["eps"][near], np.ones(np.sum(near))))
+    closed = (counts > 0) & (sums < OPEN * counts)
+    return float(edges[np.argmax(closed)]) if closed.any() else height
+
+
+def bed_top(run, k):
+    """Height that 95 % of the grains are below, m."""
+    return float(np.quantile(run.snapshot(k)["grains"]["x"][:, 2], 0.95))
+
+
+def over_time(run, of):
+    return np.array([of(run, k) for k in range(len(run.snapshot_files()))])
+
+
+def late_mean(run, of):
+    return float(np.mean([of(run, k) for k in late(run)]))
+
+
+def mean_height(run, k):
+    return float(np.mean(run.snapshot(k)["grains"]["x"][:, 2]))
+
+
+def piercing(run):
+    """Share of the last half of the jet's time in which the axis is open through the bed."""
+    return late_mean(run, lambda run, k: float(cavity_height(run, k) >= bed_top(run, k)))
+
+
+def regime(run):
+    """`packed`: the bed lies; `breakthrough`: the jet goes through it most of the time; `impregnation`: it is lifted and the jet stays within."""
+    if late_mean(run, mean_height) < 1.02 * mean_height(run, settled(run)):
+        return "packed"
+    return "breakthrough" if piercing(run) > 0.5 else "impregnation"
+
+
+def measure(quantity, run):
+    of_run = {
+        "porosity": porosity,
+        "carried": carried,
+        "water_missed": water_missed,
+        "beyond_walls": beyond_walls,
+        "grains_lost": grains_lost,
+        "piercing": piercing,
+        "height": lambda run: late_mean(run, mean_height),
+        "cavity": lambda run: late_mean(run, cavity_height),
+        "top": lambda run: late_mean(run, bed_top),
+        "swing": lambda run: float(np.std([mean_height(run, k) for k in late(run)])),
+    }.get(quantity)
+    return of_run(run) if of_run else NotImplemented
+
+
+def reference(quantity, scene, t):
+    return {"carried": 1.0}.get(quantity, 0.0)
