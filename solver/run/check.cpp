@@ -257,6 +257,20 @@ void print_grains(const Json& part, std::string& text) {
     }
 }
 
+void print_bridges(const Json& part, std::string& text) {
+    text += "liquid bridges  of the smallest grains (Bo also of the largest)\n";
+    for (const Json& b : part) {
+        const auto number = [&](const char* name) { return b[name].get<double>(); };
+        const std::string most =
+            number("largest_Bo") > number("Bo") ? fmt::format(" to {:.4g}", number("largest_Bo")) : "";
+        text += fmt::format("  {:<14} f = {:.4g} N at contact, Bo = {:.4g}{}, V/R3 = {:.3g}, breaks at {:.4g} m, holds "
+                            "elastic impacts below {:.4g} m/s\n",
+                            b["between"][0].get<std::string>() + " " + b["between"][1].get<std::string>(),
+                            number("attraction"), number("Bo"), most, number("volume_over_R3"),
+                            number("rupture_distance"), number("sticking_speed"));
+    }
+}
+
 void print_time(const Json& part, std::string& text) {
     text += fmt::format("step            {:.6g} s, ruled by {}; {} steps, {} per output, {} outputs\n",
                         part["step"].get<double>(), part["ruling_limit"].get<std::string>(),
@@ -272,15 +286,7 @@ void print_time(const Json& part, std::string& text) {
                             t["between"][0].get<std::string>() + " " + t["between"][1].get<std::string>(),
                             seconds(t["seconds"]));
     }
-    if (!part.contains("bridges")) return;
-    text += "liquid bridges  of the smallest grains (Bo also of the largest)\n";
-    for (const Json& b : part["bridges"])
-        text += fmt::format(
-            "  {:<14} f = {:.4g} N at contact, Bo = {:.4g} to {:.4g}, V/R3 = {:.3g}, breaks at {:.4g} m, holds "
-            "elastic impacts below {:.4g} m/s\n",
-            b["between"][0].get<std::string>() + " " + b["between"][1].get<std::string>(),
-            b["attraction"].get<double>(), b["Bo"].get<double>(), b["largest_Bo"].get<double>(),
-            b["volume_over_R3"].get<double>(), b["rupture_distance"].get<double>(), b["sticking_speed"].get<double>());
+    if (part.contains("bridges")) print_bridges(part["bridges"], text);
 }
 
 void print_fluid(const Json& part, std::string& text) {
