@@ -75,7 +75,7 @@ Memory memory(const GrainSystem& system) {
     sum.grains += bytes(walls.near) + bytes(walls.slot) + bytes(walls.contacts);
     for (const auto& contacts : walls.contacts) sum.grains += bytes(contacts);
     sum.pairs = bytes(list.i) + bytes(list.j) + bytes(list.incoming) + bytes(list.crosses) + bytes(list.stretch) +
-                bytes(list.force) + bytes(list.couple);
+                bytes(list.bridge) + bytes(list.force) + bytes(list.couple);
     return sum;
 }
 

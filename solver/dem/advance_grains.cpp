@@ -269,7 +269,7 @@ void renew_lists(GrainSystem& system, FluidForcing* forcing) {
     const Field<SpinRecord> spins = list.spins;
     const std::vector<std::int32_t> order =
         rebuild(list, system.grains, system.groups, system.domain, remembered_contacts(list, system.grains));
-    rebuild(system.wall_contacts, system.walls, system.grains, list.skin, system.time, on_walls);
+    rebuild(system.wall_contacts, system.walls, system.grains, list.reach + list.skin, system.time, on_walls);
     system.listed_time = system.time;
     if (forcing != nullptr) reorder_forcing(*forcing, order);
     fill_records(system);
@@ -287,14 +287,16 @@ void evaluate_contacts(GrainSystem& system, double dt) {
                            system.time, dt);
 }
 
-/// Sizes of the memory that the chosen laws need, and the skin of the neighbour list.
+/// Sizes of the memory that the chosen laws need, and reach and skin of the neighbour list.
 void prepare_lists(GrainSystem& system) {
     Neighbours& list = system.neighbours;
     const auto history = [](const auto& laws) { return std::decay_t<decltype(laws.laws)>::value_type::history; };
     list.history = std::visit(history, system.contact.contact) + std::visit(history, system.contact.rolling);
     list.rolls = !std::holds_alternative<PairLaws<NoRolling>>(system.contact.rolling);
-    double smallest = std::numeric_limits<double>::infinity();
-    for (const double r : system.grains.radius) smallest = std::min(smallest, r);
+    list.bridges = liquid_bridges(system.contact) != nullptr;
+    double smallest = std::numeric_limits<double>::infinity(), largest = 0.0;
+    for (const double r : system.grains.radius) smallest = std::min(smallest, r), largest = std::max(largest, r);
+    list.reach = cohesion_reach(system.contact, largest);
     const double skin = system.injectors.empty() ? skin_in_radii : skin_of_injected;
     list.skin = std::isfinite(smallest) ? skin * smallest : 0.0;
 }
@@ -308,7 +310,7 @@ void list_nothing(GrainSystem& system) {
 void check_box(const GrainSystem& system) {
     double largest = 0.0;
     for (const double r : system.grains.radius) largest = std::max(largest, r);
-    const double reach = 2.0 * largest + system.neighbours.skin;
+    const double reach = 2.0 * largest + system.neighbours.reach + system.neighbours.skin;
     for (int c = 0; c < 3; ++c)
         if (system.domain.periodic[static_cast<std::size_t>(c)] && system.domain.size[c] < 2.0 * reach)
             throw InputError(fmt::format("domain.size: {} m along periodic {} is too short; grains of radius {} m need "
@@ -355,7 +357,8 @@ void restore_lists(GrainSystem& system, const std::vector<RememberedContact>& pa
     } else {
         g.x = g.x_listed;
         rebuild(system.neighbours, g, system.groups, system.domain, pairs);
-        rebuild(system.wall_contacts, system.walls, g, system.neighbours.skin, system.listed_time, walls);
+        rebuild(system.wall_contacts, system.walls, g, system.neighbours.reach + system.neighbours.skin,
+                system.listed_time, walls);
         for (std::size_t k = 0; k < g.size(); ++k) g.x[k] = x[static_cast<std::size_t>(g.id[k])];
     }
     fill_records(system);

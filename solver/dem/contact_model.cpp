@@ -50,7 +50,30 @@ Pairs table_of(const std::vector<const Variant*>& laws, std::int32_t materials, 
         *laws.front());
 }
 
+/// Dry pairs among wet ones are bridges without liquid.
+decltype(ContactModel::cohesion) cohesion_of(const std::vector<const CohesionLaw*>& laws, std::int32_t materials) {
+    if (std::all_of(laws.begin(), laws.end(),
+                    [](const CohesionLaw* law) { return std::holds_alternative<NoCohesion>(*law); }))
+        return PairLaws<NoCohesion>{materials, std::vector<NoCohesion>(laws.size()), true};
+    PairLaws<LiquidBridge> pairs;
+    pairs.materials = materials;
+    for (const CohesionLaw* law : laws) {
+        const auto* bridge = std::get_if<LiquidBridge>(law);
+        pairs.laws.push_back(bridge != nullptr ? *bridge : LiquidBridge());
+        pairs.uniform = pairs.uniform && same(pairs.laws.back(), pairs.laws.front());
+    }
+    return pairs;
+}
+
 } // namespace
+
+double cohesion_reach(const ContactModel& model, double largest) {
+    double reach = 0.0;
+    if (const auto* bridges = liquid_bridges(model))
+        for (const LiquidBridge& law : bridges->laws)
+            reach = std::max(reach, law.rupture_distance(LiquidBridge::formed_volume(law.parameters, largest)));
+    return reach;
+}
 
 MaterialContact read_contact(Table table) {
     ContactLaw contact = make_family<ContactLaw>(table);
@@ -58,7 +81,11 @@ MaterialContact read_contact(Table table) {
     const bool frictional = std::visit([](const auto& law) { return law.parameters.friction > 0.0; }, contact);
     RollingLaw rolling = NoRolling{};
     if (frictional || table.has("rolling")) rolling = make_family<RollingLaw>(table.law("rolling"));
-    return {contact, rolling};
+    CohesionLaw cohesion = NoCohesion{};
+    if (table.has("cohesion")) cohesion = make_family<CohesionLaw>(table.law("cohesion"));
+    if (std::holds_alternative<NoContact>(contact) && !std::holds_alternative<NoCohesion>(cohesion))
+        table.fail("cohesion", "bridges form where grains touch, and the contact law \"none\" lets none touch");
+    return {contact, rolling, cohesion};
 }
 
 ContactModel contact_model(const std::vector<std::string>& names,
@@ -77,6 +104,7 @@ ContactModel contact_model(const std::vector<std::string>& names,
     }
     std::vector<const ContactLaw*> contact;
     std::vector<const RollingLaw*> rolling;
+    std::vector<const CohesionLaw*> cohesion;
     for (std::size_t a = 0; a < n; ++a)
         for (std::size_t b = 0; b < n; ++b) {
             const MaterialContact* laws = nullptr;
@@ -87,7 +115,8 @@ ContactModel contact_model(const std::vector<std::string>& names,
                 const std::size_t wall = std::max(a, b), other = std::min(a, b);
                 laws = own[wall] ? &*own[wall] : (own[other] ? &*own[other] : &*own.front());
             } else if (a == b ||
-                       (same_law(own[a]->contact, own[b]->contact) && same_law(own[a]->rolling, own[b]->rolling)))
+                       (same_law(own[a]->contact, own[b]->contact) && same_law(own[a]->rolling, own[b]->rolling) &&
+                        same_law(own[a]->cohesion, own[b]->cohesion)))
                 laws = &*own[a];
             else
                 throw InputError(fmt::format("{}: contact: \"{}\" and \"{}\" differ; give [[contact]] between = "
@@ -95,11 +124,13 @@ ContactModel contact_model(const std::vector<std::string>& names,
                                              file, names[a], names[b], names[a], names[b]));
             contact.push_back(&laws->contact);
             rolling.push_back(&laws->rolling);
+            cohesion.push_back(&laws->cohesion);
         }
     using ContactPairs = decltype(ContactModel::contact);
     using RollingPairs = decltype(ContactModel::rolling);
     const auto materials = static_cast<std::int32_t>(n);
-    return {table_of<ContactPairs>(contact, materials, file), table_of<RollingPairs>(rolling, materials, file)};
+    return {table_of<ContactPairs>(contact, materials, file), table_of<RollingPairs>(rolling, materials, file),
+            cohesion_of(cohesion, materials)};
 }
 
 } // namespace plumb

@@ -148,9 +148,38 @@ inline void store_stretch(double* at, PackMask touching, const Space<Pack>& stre
     std::memcpy(at, &kept, sizeof kept);
 }
 
-template <class Law, class RollingLawType>
+inline Pack smaller_radius(const Neighbours& list, std::size_t block) {
+    Pack smaller;
+    for (std::size_t k = 0; k < 8; ++k)
+        smaller[k] = std::min(list.records[static_cast<std::size_t>(list.i[8 * block + k])].radius,
+                              list.records[static_cast<std::size_t>(list.j[8 * block + k])].radius);
+    return smaller;
+}
+
+/// Attraction of the bridges of eight pairs [N], 0 where there is none: forms those of pairs that touch, breaks those
+/// of pairs too far apart.
+[[gnu::always_inline]] inline Pack bridge_attraction(Neighbours& list, std::size_t block,
+                                                     const LaneParameters<LiquidBridge>& laws, const Block& b,
+                                                     PackMask touching) {
+    const Pack zero = broadcast<Pack>(0.0), one = broadcast<Pack>(1.0);
+    Pack volume;
+    std::memcpy(&volume, list.bridge.data() + 8 * block, sizeof volume);
+    const PackMask forming = touching & (volume == zero);
+    if (!any(forming) && !any(volume > zero)) return zero;
+    const LiquidBridge::Parameters<Pack> p = laws.of(list, block);
+    if (any(forming)) volume = select(forming, LiquidBridge::formed_volume(p, smaller_radius(list, block)), volume);
+    const Pack s = larger(zero - b.contact.overlap, zero);
+    volume = select(LiquidBridge::holds(p, s, volume), volume, zero);
+    std::memcpy(list.bridge.data() + 8 * block, &volume, sizeof volume);
+    const PackMask bridged = volume > zero;
+    return select(bridged, LiquidBridge::attraction(p, s, select(bridged, volume, one), b.contact.inverse_radius),
+                  zero);
+}
+
+template <class Law, class RollingLawType, class CohesionType>
 [[gnu::always_inline]] inline void apply_laws(Neighbours& list, std::size_t block, const LaneParameters<Law>& laws,
-                                              const LaneParameters<RollingLawType>& rolling, const Block& b) {
+                                              const LaneParameters<RollingLawType>& rolling,
+                                              const LaneParameters<CohesionType>& cohesion, const Block& b) {
     constexpr bool rolls = !std::is_same_v<RollingLawType, NoRolling>;
     const Pack zero = broadcast<Pack>(0.0);
     const PackMask touching = b.contact.overlap > zero;
@@ -163,6 +192,12 @@ template <class Law, class RollingLawType>
     const Space<Pack> torque = (zero - b.lever) * cross(b.contact.normal, f.tangential);
     Pack rows[8] = {force.x, force.y, force.z, torque.x, torque.y, torque.z, zero, zero};
     for (int c = 0; c < 6; ++c) rows[c] = select(touching, rows[c], zero);
+    if constexpr (std::is_same_v<CohesionType, LiquidBridge>) { // along the normal: no torque
+        const Pack pull = bridge_attraction(list, block, cohesion, b, touching);
+        const PackMask bridged = pull > zero;
+        const Space<Pack> normal = select<Pack>(bridged, b.contact.normal, {zero, zero, zero});
+        rows[0] -= pull * normal.x, rows[1] -= pull * normal.y, rows[2] -= pull * normal.z;
+    }
     transpose(rows);
     for (std::size_t k = 0; k < 8; ++k) list.force[8 * block + k] = rows[k];
     if constexpr (rolls) {
@@ -185,13 +220,14 @@ template <class Law, class RollingLawType>
 } // namespace sweep
 
 /// Forces of all candidate pairs from list.records and list.spins; the springs advance by dt [s].
-template <class Law, class RollingLawType>
+template <class Law, class RollingLawType, class CohesionType>
 void sweep_pairs(Neighbours& list, const PairLaws<Law>& contact, const PairLaws<RollingLawType>& rolling,
-                 const Domain& domain, double dt) {
-    constexpr bool radii = std::is_same_v<Law, HertzMindlin>;
+                 const PairLaws<CohesionType>& cohesion, const Domain& domain, double dt) {
+    constexpr bool radii = std::is_same_v<Law, HertzMindlin> || std::is_same_v<CohesionType, LiquidBridge>;
     constexpr bool rolls = !std::is_same_v<RollingLawType, NoRolling>;
     const sweep::LaneParameters<Law> laws(contact);
     const sweep::LaneParameters<RollingLawType> rolling_laws(rolling);
+    const sweep::LaneParameters<CohesionType> cohesion_laws(cohesion);
     parallel_chunks(
         list.padded() / 8,
         [&](std::size_t begin, std::size_t end) {
@@ -200,7 +236,8 @@ void sweep_pairs(Neighbours& list, const PairLaws<Law>& contact, const PairLaws<
                 const std::size_t count = std::min(sweep::blocks_at_once, end - at);
                 for (std::size_t k = 0; k < count; ++k)
                     sweep::compute_geometry<radii, rolls>(list, at + k, domain, dt, buffer[k]);
-                for (std::size_t k = 0; k < count; ++k) sweep::apply_laws(list, at + k, laws, rolling_laws, buffer[k]);
+                for (std::size_t k = 0; k < count; ++k)
+                    sweep::apply_laws(list, at + k, laws, rolling_laws, cohesion_laws, buffer[k]);
             }
         },
         8 * sweep::blocks_at_once);
@@ -208,5 +245,9 @@ void sweep_pairs(Neighbours& list, const PairLaws<Law>& contact, const PairLaws<
 
 /// The same for the laws of `model`, chosen once.
 void evaluate_pairs(Neighbours& list, const ContactModel& model, const Domain& domain, double dt);
+
+/// The same with liquid bridges.
+void evaluate_wet_pairs(Neighbours& list, const ContactModel& model, const PairLaws<LiquidBridge>& bridges,
+                        const Domain& domain, double dt);
 
 } // namespace plumb

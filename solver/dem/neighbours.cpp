@@ -111,9 +111,9 @@ struct Found {
     std::vector<std::int32_t> i, j;
 };
 
-/// Pairs owned by the grains [begin, end).
+/// Pairs owned by the grains [begin, end) that are no farther apart than `margin` [m].
 void search(const Cells& cells, const Grains& grains, const std::vector<GrainGroup>& groups, const Domain& domain,
-            double skin, std::size_t begin, std::size_t end, Found& found) {
+            double margin, std::size_t begin, std::size_t end, Found& found) {
     std::vector<Stretch> ranges;
     std::int32_t cell = -1;
     const bool any_excluded =
@@ -122,7 +122,7 @@ void search(const Cells& cells, const Grains& grains, const std::vector<GrainGro
     for (std::size_t i = begin; i < end; ++i) {
         const std::int32_t now = cells.of(grains.x[i]);
         if (now != cell) collect(cells, domain, cell = now, ranges);
-        const double reach_i = grains.radius[i] + skin;
+        const double reach_i = grains.radius[i] + margin;
         for (const Stretch& range : ranges) {
             const Vec3 xi = grains.x[i] + range.shift;
             for (auto j = static_cast<std::size_t>(std::max(range.begin, static_cast<std::int32_t>(i) + 1));
@@ -145,7 +145,7 @@ void list_pairs(Neighbours& list, const Cells& cells, const Grains& grains, cons
     const std::size_t n = grains.size();
     std::vector<Found> found((n + parallel_chunk - 1) / parallel_chunk);
     parallel_chunks(n, [&](std::size_t begin, std::size_t end) {
-        search(cells, grains, groups, domain, list.skin, begin, end, found[begin / parallel_chunk]);
+        search(cells, grains, groups, domain, list.reach + list.skin, begin, end, found[begin / parallel_chunk]);
     });
     list.count = 0;
     for (const Found& part : found) list.count += part.i.size();
@@ -215,9 +215,11 @@ void restore(Neighbours& list, const Grains& grains, const std::vector<Remembere
         const auto owner = static_cast<std::size_t>(std::min(first, second));
         const double sign = first < second ? 1.0 : -1.0;
         for (auto p = static_cast<std::size_t>(list.own[owner]); p < static_cast<std::size_t>(list.own[owner + 1]); ++p)
-            if (list.j[p] == std::max(first, second))
+            if (list.j[p] == std::max(first, second)) {
                 for (int h = 0; h < list.history; ++h)
                     list.remembered(p, h) = sign * contact.stretch[static_cast<std::size_t>(h)];
+                if (list.bridges) list.bridge[p] = contact.bridge;
+            }
     }
 }
 
@@ -225,12 +227,13 @@ void restore(Neighbours& list, const Grains& grains, const std::vector<Remembere
 
 std::vector<RememberedContact> remembered_contacts(const Neighbours& list, const Grains& grains) {
     std::vector<RememberedContact> memory;
-    if (list.history == 0) return memory;
+    if (list.history == 0 && !list.bridges) return memory;
     memory.reserve(list.count);
     for (std::size_t p = 0; p < list.count; ++p) {
         RememberedContact contact{
             grains.id[static_cast<std::size_t>(list.i[p])], grains.id[static_cast<std::size_t>(list.j[p])], {}};
-        bool any = false;
+        if (list.bridges) contact.bridge = list.bridge[p];
+        bool any = contact.bridge != 0.0;
         for (int h = 0; h < list.history; ++h) {
             contact.stretch[static_cast<std::size_t>(h)] = list.remembered(p, h);
             any = any || contact.stretch[static_cast<std::size_t>(h)] != 0.0;
@@ -248,7 +251,7 @@ std::vector<std::int32_t> rebuild(Neighbours& list, Grains& grains, const std::v
         grains.x[k] = inside;
     }
     const double largest = grains.radius.empty() ? 0.0 : *std::max_element(grains.radius.begin(), grains.radius.end());
-    Cells cells = sized_cells(domain, 2.0 * largest + list.skin, grains.size());
+    Cells cells = sized_cells(domain, 2.0 * largest + list.reach + list.skin, grains.size());
     std::vector<std::int32_t> order = sort_by_cell(cells, grains);
     grains.x_listed = grains.x;
     list_pairs(list, cells, grains, groups, domain);
@@ -256,6 +259,7 @@ std::vector<std::int32_t> rebuild(Neighbours& list, Grains& grains, const std::v
     fill_slots(list, grains.size());
     mark_crossings(list, grains, domain);
     list.stretch.assign(list.padded() * static_cast<std::size_t>(list.history), 0.0);
+    list.bridge.assign(list.bridges ? list.padded() : 0, 0.0);
     restore(list, grains, memory);
     list.force.assign(list.padded() + 1, PairForce{});
     list.couple.assign(list.rolls ? list.padded() : 0, PairCouple{});

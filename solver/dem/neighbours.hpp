@@ -34,12 +34,13 @@ struct alignas(64) ForceSlots {
 /// Couple of rolling resistance on i (its opposite acts on j), padded to four numbers.
 using PairCouple [[gnu::vector_size(32)]] = double;
 
-/// Candidate pairs (i < j in the order of the grains) nearer than the sum of their radii plus the skin, in ascending
+/// Candidate pairs (i < j in the order of the grains) nearer than the sum of their radii, reach and skin, in ascending
 /// order of i, padded with (n, n) to whole blocks of eight; place n holds a record that touches nothing. The list is a
 /// pure function of the positions it was built for (Grains::x_listed) and of the ids, so it is never saved: a resumed
 /// run builds the same one again.
 struct Neighbours {
     double skin = 0.0;                        // [m]; the list holds until a grain has moved skin / 2
+    double reach = 0.0;                       // [m] separation at which the last liquid bridge breaks; 0 without any
     std::size_t count = 0;                    // candidate pairs without padding
     Field<std::int32_t> i, j;                 // [padded]
     std::vector<std::int32_t> own;            // [n + 1] pairs own[k] .. own[k+1]-1 have i = k
@@ -50,8 +51,10 @@ struct Neighbours {
     Field<GrainRecord> records;               // [n + 1] what the sweep reads of a grain
     Field<SpinRecord> spins;                  // [n + 1]
     bool rolls = false;                       // a rolling law is in use: couples are kept
+    bool bridges = false;                     // grains are wet: volumes of bridges are kept
     int history = 0;                          // numbers remembered per pair: tangential, then rolling stretch
     Field<double> stretch;                    // [blocks][history][8]
+    Field<double> bridge;                     // [padded] liquid between the two [m3], 0 without a bridge; empty if dry
     Field<PairForce> force;                   // [padded + 1] last forces; the last line stays zero
     Field<PairCouple> couple;                 // [padded] last couples; empty without rolling resistance
 
@@ -64,10 +67,12 @@ struct Neighbours {
     }
 };
 
-/// A stretch remembered by the pair of grains with these ids, as seen from `first` (it changes sign with the order).
+/// What the pair of grains with these ids remembers. A stretch is as seen from `first` (it changes sign with the
+/// order).
 struct RememberedContact {
     std::int32_t first, second;
     std::array<double, 6> stretch;
+    double bridge = 0.0; // liquid between the two [m3]
 };
 
 /// All non-zero memories of the list: for rebuilding it and for checkpoints.

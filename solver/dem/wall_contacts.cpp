@@ -40,7 +40,6 @@ void apply_laws(WallContact& contact, const WallPoint& point, const Law& law, co
     if constexpr (Law::history > 0) remember(contact, 0, stretch);
     contact.force = vec(f.normal * n + f.tangential);
     contact.torque = -point.distance * point.normal.cross(vec(f.tangential));
-    contact.overlap = state.overlap;
     if constexpr (!std::is_same_v<RollingLawType, NoRolling>) {
         const Vec3 omega = surface / grain.radius;
         const double r = grain.radius;
@@ -57,11 +56,23 @@ void apply_laws(WallContact& contact, const WallPoint& point, const Law& law, co
     }
 }
 
+/// Forms the bridge of a grain that touches, breaks that of one too far away, and adds what it pulls.
+void apply_bridge(WallContact& contact, const WallPoint& point, const LiquidBridge& law, double radius) {
+    const LiquidBridge::Parameters<double>& p = law.parameters;
+    const double s = std::max(-contact.overlap, 0.0);
+    if (contact.overlap > 0.0 && contact.bridge == 0.0) contact.bridge = LiquidBridge::formed_volume(p, radius);
+    if (!LiquidBridge::holds(p, s, contact.bridge)) contact.bridge = 0.0;
+    if (contact.bridge > 0.0)
+        contact.force -= LiquidBridge::attraction(p, s, contact.bridge, 1.0 / radius) * point.normal;
+}
+
 /// Replaces the contacts of one grain by those of now, each taking over the memory of its forerunner.
-template <class Law, class RollingLawType>
+template <class Law, class RollingLawType, class CohesionType>
 void update_grain(WallContacts& near_walls, std::size_t q, const std::vector<WallBody>& walls,
-                  const PairLaws<Law>& laws, const PairLaws<RollingLawType>& rolling, const Grains& grains,
-                  const Neighbours& list, double time, double dt) {
+                  const PairLaws<Law>& laws, const PairLaws<RollingLawType>& rolling,
+                  const PairLaws<CohesionType>& cohesion, const Grains& grains, const Neighbours& list, double time,
+                  double dt) {
+    constexpr bool wet = std::is_same_v<CohesionType, LiquidBridge>;
     const auto place = static_cast<std::size_t>(near_walls.near[q]);
     std::vector<WallContact>& contacts = near_walls.contacts[q];
     static thread_local std::vector<WallContact> before; // a handful at most; keeps its memory from call to call
@@ -74,13 +85,20 @@ void update_grain(WallContacts& near_walls, std::size_t q, const std::vector<Wal
     for (std::size_t e = near_walls.walls_begin[q]; e < near_walls.walls_begin[q + 1]; ++e) {
         const std::int32_t number = near_walls.walls[e];
         const WallBody& wall = walls[static_cast<std::size_t>(number)];
-        wall.touch(x, grain.radius, time, [&](const WallPoint& point) {
+        wall.touch(x, wet ? grain.radius + list.reach : grain.radius, time, [&](const WallPoint& point) {
             WallContact now{grains.id[place], number, point.element};
+            now.overlap = grain.radius - point.distance;
+            const bool touches = point.distance < grain.radius;
             for (const WallContact& old : before)
-                if (old.wall == now.wall && old.element == now.element) now.stretch = old.stretch;
-            apply_laws(now, point, laws.of(material, wall.material), rolling.of(material, wall.material), grain,
-                       list.spins[place], wall.velocity, dt);
-            contacts.push_back(now);
+                if (old.wall == now.wall && old.element == now.element) {
+                    if (touches) now.stretch = old.stretch;
+                    now.bridge = old.bridge;
+                }
+            if (touches)
+                apply_laws(now, point, laws.of(material, wall.material), rolling.of(material, wall.material), grain,
+                           list.spins[place], wall.velocity, dt);
+            if constexpr (wet) apply_bridge(now, point, cohesion.of(material, wall.material), grain.radius);
+            if (touches || now.bridge > 0.0) contacts.push_back(now);
         });
     }
 }
@@ -95,7 +113,7 @@ std::vector<WallContact> all_wall_contacts(const WallContacts& near_walls) {
     return all;
 }
 
-void rebuild(WallContacts& near_walls, const std::vector<WallBody>& walls, const Grains& grains, double skin,
+void rebuild(WallContacts& near_walls, const std::vector<WallBody>& walls, const Grains& grains, double margin,
              double time, const std::vector<WallContact>& memory) {
     near_walls.near.clear();
     near_walls.contacts.clear();
@@ -107,7 +125,7 @@ void rebuild(WallContacts& near_walls, const std::vector<WallBody>& walls, const
     for (std::size_t k = 0; k < grains.size(); ++k) {
         for (std::size_t w = 0; w < walls.size(); ++w) {
             bool close = false;
-            walls[w].touch(grains.x[k], grains.radius[k] + skin, time, [&](const WallPoint&) { close = true; });
+            walls[w].touch(grains.x[k], grains.radius[k] + margin, time, [&](const WallPoint&) { close = true; });
             if (close) near_walls.walls.push_back(static_cast<std::int32_t>(w));
         }
         if (near_walls.walls.size() == near_walls.walls_begin.back()) continue;
@@ -127,18 +145,18 @@ void rebuild(WallContacts& near_walls, const std::vector<WallBody>& walls, const
 void evaluate_wall_contacts(WallContacts& near_walls, const std::vector<WallBody>& walls, const ContactModel& model,
                             const Grains& grains, const Neighbours& list, double time, double dt) {
     std::visit(
-        [&](const auto& laws, const auto& rolling) {
+        [&](const auto& laws, const auto& rolling, const auto& cohesion) {
             using Law = typename std::decay_t<decltype(laws.laws)>::value_type;
             if constexpr (!std::is_same_v<Law, NoContact>)
                 parallel_chunks(
                     near_walls.near.size(),
                     [&](std::size_t begin, std::size_t end) {
                         for (std::size_t q = begin; q < end; ++q)
-                            update_grain(near_walls, q, walls, laws, rolling, grains, list, time, dt);
+                            update_grain(near_walls, q, walls, laws, rolling, cohesion, grains, list, time, dt);
                     },
                     64);
         },
-        model.contact, model.rolling);
+        model.contact, model.rolling, model.cohesion);
 }
 
 } // namespace plumb

@@ -13,7 +13,7 @@
 
 namespace plumb {
 
-/// One contact point of a grain with a wall, with its memory and its last force.
+/// One contact point of a grain with a wall, or the bridge that it has left, with its memory and its last force.
 struct WallContact {
     std::int32_t grain;              // id
     std::int32_t wall;               // index
@@ -21,7 +21,8 @@ struct WallContact {
     std::array<double, 6> stretch{}; // tangential, then rolling
     Vec3 force = Vec3::Zero();       // on the grain [N]
     Vec3 torque = Vec3::Zero();      // on the grain about its centre [N m]
-    double overlap = 0.0;            // [m]
+    double overlap = 0.0;            // [m]; negative where only a bridge holds the grain
+    double bridge = 0.0;             // liquid between grain and wall [m3], 0 without a bridge
 };
 
 /// Grains near a wall, by place in the present order, and their contacts.
@@ -36,8 +37,9 @@ struct WallContacts {
 /// All contacts with a memory or a force, in order of grain id: for checkpoints and probes.
 std::vector<WallContact> all_wall_contacts(const WallContacts& walls);
 
-/// Finds the grains that may touch a wall before the neighbour list is rebuilt, keeping `memory`.
-void rebuild(WallContacts& near_walls, const std::vector<WallBody>& walls, const Grains& grains, double skin,
+/// Finds the grains that may touch a wall, or be held by one, before the neighbour list is rebuilt, keeping `memory`:
+/// those within `margin` [m] of a wall.
+void rebuild(WallContacts& near_walls, const std::vector<WallBody>& walls, const Grains& grains, double margin,
              double time, const std::vector<WallContact>& memory);
 
 /// Forces of the walls on the grains near them, from the records of the sweep over pairs (positions and the velocities

@@ -1,6 +1,7 @@
 #include "run/check.hpp"
 
 #include "core/parallel.hpp"
+#include "run/bridge_numbers.hpp"
 #include "run/grain_numbers.hpp"
 
 #include <fmt/format.h>
@@ -76,6 +77,19 @@ Json contact_times_part(const GrainSystem& system) {
     return times;
 }
 
+Json bridges_part(const GrainSystem& system) {
+    Json part = Json::array();
+    for (const BridgeNumbers& n : bridge_numbers(system))
+        part.push_back({{"between", {n.a, n.b}},
+                        {"attraction", n.attraction},
+                        {"Bo", n.bond},
+                        {"largest_Bo", n.largest_bond},
+                        {"volume_over_R3", n.volume_ratio},
+                        {"rupture_distance", n.rupture_distance},
+                        {"sticking_speed", n.sticking_speed}});
+    return part;
+}
+
 Json step_part(const Simulation& s) {
     const Timing& t = s.timing;
     Json part{{"step", t.dt}, {"ruling_limit", t.ruling}, {"limits", Json::object()}};
@@ -88,6 +102,7 @@ Json step_part(const Simulation& s) {
     part["contact_law"] = std::visit([](const auto& pairs) { return law_name(ContactLaw(pairs.laws.front())); },
                                      s.grains.contact.contact);
     part["contact_times"] = contact_times_part(s.grains);
+    if (liquid_bridges(s.grains.contact) != nullptr) part["bridges"] = bridges_part(s.grains);
     return part;
 }
 
@@ -242,6 +257,20 @@ void print_grains(const Json& part, std::string& text) {
     }
 }
 
+void print_bridges(const Json& part, std::string& text) {
+    text += "liquid bridges  of the smallest grains (Bo also of the largest)\n";
+    for (const Json& b : part) {
+        const auto number = [&](const char* name) { return b[name].get<double>(); };
+        const std::string most =
+            number("largest_Bo") > number("Bo") ? fmt::format(" to {:.4g}", number("largest_Bo")) : "";
+        text += fmt::format("  {:<14} f = {:.4g} N at contact, Bo = {:.4g}{}, V/R3 = {:.3g}, breaks at {:.4g} m, holds "
+                            "elastic impacts below {:.4g} m/s\n",
+                            b["between"][0].get<std::string>() + " " + b["between"][1].get<std::string>(),
+                            number("attraction"), number("Bo"), most, number("volume_over_R3"),
+                            number("rupture_distance"), number("sticking_speed"));
+    }
+}
+
 void print_time(const Json& part, std::string& text) {
     text += fmt::format("step            {:.6g} s, ruled by {}; {} steps, {} per output, {} outputs\n",
                         part["step"].get<double>(), part["ruling_limit"].get<std::string>(),
@@ -257,6 +286,7 @@ void print_time(const Json& part, std::string& text) {
                             t["between"][0].get<std::string>() + " " + t["between"][1].get<std::string>(),
                             seconds(t["seconds"]));
     }
+    if (part.contains("bridges")) print_bridges(part["bridges"], text);
 }
 
 void print_fluid(const Json& part, std::string& text) {

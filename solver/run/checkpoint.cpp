@@ -48,8 +48,8 @@ private:
     }
     template <class T> void read_field(const std::string& name, std::vector<T>& field, std::size_t n) const;
     void load_grains(GrainSystem& system) const;
-    std::vector<RememberedContact> pairs(std::size_t n) const;
-    std::vector<WallContact> walls(std::size_t n, std::size_t walls) const;
+    std::vector<RememberedContact> pairs(std::size_t n, bool wet) const;
+    std::vector<WallContact> walls(std::size_t n, std::size_t walls, bool wet) const;
     void load_fluid(FluidOnGrains& fluid, std::size_t n) const;
     void load_boundary(BoundaryParticles& boundary, int dimensions) const;
     void load_sph(SphFluid& fluid) const;
@@ -87,26 +87,30 @@ void Loader::load_grains(GrainSystem& system) const {
     for (const std::int32_t group : system.grains.group) index(group, system.groups.size(), "grains/group");
     for (std::size_t q = 0; q < system.injectors.size(); ++q)
         system.injected[q].count = integers(fmt::format("injectors/{}", q), system.injectors[q].points.size());
-    restore_lists(system, pairs(n), walls(n, system.walls.size()));
+    const bool wet = liquid_bridges(system.contact) != nullptr;
+    restore_lists(system, pairs(n, wet), walls(n, system.walls.size(), wet));
 }
 
-std::vector<RememberedContact> Loader::pairs(std::size_t n) const {
+std::vector<RememberedContact> Loader::pairs(std::size_t n, bool wet) const {
     const std::size_t count = file_.shape("contacts/ids").at(0);
     const std::vector<std::int64_t> ids = integers("contacts/ids", 2 * count);
     const std::vector<double> stretch = doubles("contacts/stretch", 6 * count);
+    const std::vector<double> liquid = wet ? doubles("contacts/bridge", count) : std::vector<double>(count, 0.0);
     std::vector<RememberedContact> memory(count);
     for (std::size_t k = 0; k < count; ++k) {
         memory[k].first = index(ids[2 * k], n, "contacts/ids");
         memory[k].second = index(ids[2 * k + 1], n, "contacts/ids");
         std::copy_n(stretch.begin() + static_cast<std::ptrdiff_t>(6 * k), 6, memory[k].stretch.begin());
+        memory[k].bridge = liquid[k];
     }
     return memory;
 }
 
-std::vector<WallContact> Loader::walls(std::size_t n, std::size_t walls) const {
+std::vector<WallContact> Loader::walls(std::size_t n, std::size_t walls, bool wet) const {
     const std::size_t count = file_.shape("wall_contacts/ids").at(0);
     const std::vector<std::int64_t> ids = integers("wall_contacts/ids", 3 * count);
     const std::vector<double> values = doubles("wall_contacts/values", 13 * count);
+    const std::vector<double> liquid = wet ? doubles("wall_contacts/bridge", count) : std::vector<double>(count, 0.0);
     std::vector<WallContact> memory(count);
     for (std::size_t k = 0; k < count; ++k) {
         WallContact& c = memory[k];
@@ -118,6 +122,7 @@ std::vector<WallContact> Loader::walls(std::size_t n, std::size_t walls) const {
         c.force = Vec3(v[6], v[7], v[8]);
         c.torque = Vec3(v[9], v[10], v[11]);
         c.overlap = v[12];
+        c.bridge = liquid[k];
     }
     return memory;
 }

@@ -30,6 +30,7 @@ std::vector<LawFamily> law_families() {
                                     {"grains.arrange", law_entries<Arrangement>()},
                                     {"grains.contact", law_entries<ContactLaw>()},
                                     {"grains.contact.rolling", law_entries<RollingLaw>()},
+                                    {"grains.contact.cohesion", law_entries<CohesionLaw>()},
                                     {"wall.shape", law_entries<Wall>()},
                                     {"coupling.kernel (grid)", law_entries<GridKernel>()},
                                     {"coupling.drag", law_entries<DragLaw>()},

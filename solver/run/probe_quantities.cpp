@@ -18,6 +18,11 @@ template <class Value> std::vector<double> by_id(const Sample& s, Value&& value)
     return values;
 }
 
+/// Of those contacts that are more than a bridge.
+template <class Contacts> std::ptrdiff_t number_touching(const Contacts& contacts) {
+    return std::count_if(contacts.begin(), contacts.end(), [](const auto& c) { return c.overlap > 0.0; });
+}
+
 void demand_constant_count(const Simulation& s, const Table& t) {
     if (!s.grains.injectors.empty())
         t.fail("quantity", "one value per grain needs a constant number of grains; the scene has an injector");
@@ -139,6 +144,21 @@ double GranularTemperature::operator()(const Sample& s) const {
     const double sum = s.sum(
         0.0, [&](std::size_t k) { return members.contain(g, k) ? g.mass[k] * (g.v[k] - mean).squaredNorm() : 0.0; });
     return sum / (3.0 * mass);
+}
+
+double ContactCount::operator()(const Sample& s) const {
+    return static_cast<double>(number_touching(s.pairs()) + number_touching(s.walls()));
+}
+
+double BridgeCount::operator()(const Sample& s) const {
+    const auto bridged = [](const auto& c) { return c.bridge > 0.0; };
+    return static_cast<double>(std::count_if(s.pairs().begin(), s.pairs().end(), bridged) +
+                               std::count_if(s.walls().begin(), s.walls().end(), bridged));
+}
+
+double CoordinationNumber::operator()(const Sample& s) const {
+    const std::ptrdiff_t ends = 2 * number_touching(s.pairs()) + number_touching(s.walls());
+    return static_cast<double>(ends) / static_cast<double>(s.place.size());
 }
 
 double MaxOverlap::operator()(const Sample& s) const {

@@ -112,8 +112,8 @@ struct GrainKineticEnergy {
 
 struct GrainContactEnergy {
     static constexpr std::string_view name = "grain_contact_energy", units = "J";
-    static constexpr LawInfo info{"elastic energy of all contacts: 1/2 k o^2 + 1/2 k_t s^2; Hertz 8/15 E* sqrt(R*) "
-                                  "o^2.5 + 1/2 S_t s^2; rolling spring 1/2 k_r b^2",
+    static constexpr LawInfo info{"energy of all contacts: 1/2 k o^2 + 1/2 k_t s^2; Hertz 8/15 E* sqrt(R*) o^2.5 + "
+                                  "1/2 S_t s^2; rolling spring 1/2 k_r b^2; bridge -(work to its rupture)",
                                   "any", "definition; Johnson 1985, Contact Mechanics, eq. 4.23 (Hertz)"};
     explicit GrainContactEnergy(Table& /*table*/) {}
     double operator()(const Sample& s) const;
@@ -183,16 +183,22 @@ struct ContactCount {
     static constexpr std::string_view name = "contact_count", units = "1";
     static constexpr LawInfo info{"pairs of grains in contact + contact points with walls", "any", "definition"};
     explicit ContactCount(Table& /*table*/) {}
-    double operator()(const Sample& s) const { return static_cast<double>(s.pairs().size() + s.walls().size()); }
+    double operator()(const Sample& s) const;
+};
+
+struct BridgeCount {
+    static constexpr std::string_view name = "bridge_count", units = "1";
+    static constexpr LawInfo info{"liquid bridges between grains + those to walls, in contact or not", "any",
+                                  "definition"};
+    explicit BridgeCount(Table& /*table*/) {}
+    double operator()(const Sample& s) const;
 };
 
 struct CoordinationNumber {
     static constexpr std::string_view name = "coordination_number", units = "1";
     static constexpr LawInfo info{"(2 pairs + wall contacts) / n: contacts of a grain on average", "any", "definition"};
     explicit CoordinationNumber(Table& /*table*/) {}
-    double operator()(const Sample& s) const {
-        return static_cast<double>(2 * s.pairs().size() + s.walls().size()) / static_cast<double>(s.place.size());
-    }
+    double operator()(const Sample& s) const;
 };
 
 struct MaxOverlap {
@@ -271,9 +277,9 @@ struct GrainAngularVelocities {
 using ProbeQuantity =
     std::variant<GrainPosition, GrainVelocity, GrainAngularVelocity, GrainForce, GrainMeanPosition, GrainMeanVelocity,
                  GrainKineticEnergy, GrainContactEnergy, GrainPotentialEnergy, GrainTotalEnergy, GrainMomentum,
-                 GrainAngularMomentum, GranularTemperature, GrainCount, ContactCount, CoordinationNumber, MaxOverlap,
-                 WallForce, PackingFraction, GrainFluidForce, GrainDragForce, GrainVelocities, GrainAngularVelocities,
-                 FluidKineticEnergy, FluidMeanVelocity, FluidGreatestSpeed, FluidVelocityWave, FluidMeanPressure,
-                 FluidGreatestPressure, FluidFlowRate>;
+                 GrainAngularMomentum, GranularTemperature, GrainCount, ContactCount, BridgeCount, CoordinationNumber,
+                 MaxOverlap, WallForce, PackingFraction, GrainFluidForce, GrainDragForce, GrainVelocities,
+                 GrainAngularVelocities, FluidKineticEnergy, FluidMeanVelocity, FluidGreatestSpeed, FluidVelocityWave,
+                 FluidMeanPressure, FluidGreatestPressure, FluidFlowRate>;
 
 } // namespace plumb

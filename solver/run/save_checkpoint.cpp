@@ -31,6 +31,10 @@ void write_contacts(Hdf5Writer& file, const GrainSystem& system) {
     }
     file.write("contacts/ids", std::span<const std::int32_t>(ids), {pairs.size(), 2});
     file.write("contacts/stretch", std::span<const double>(values), {pairs.size(), 6});
+    const bool wet = system.neighbours.bridges;
+    std::vector<double> liquid;
+    for (const RememberedContact& c : pairs) liquid.push_back(c.bridge);
+    if (wet) file.write("contacts/bridge", liquid);
     ids.clear();
     values.clear();
     const std::vector<WallContact> walls = all_wall_contacts(system.wall_contacts);
@@ -43,6 +47,9 @@ void write_contacts(Hdf5Writer& file, const GrainSystem& system) {
     }
     file.write("wall_contacts/ids", std::span<const std::int32_t>(ids), {walls.size(), 3});
     file.write("wall_contacts/values", std::span<const double>(values), {walls.size(), 13});
+    liquid.clear();
+    for (const WallContact& c : walls) liquid.push_back(c.bridge);
+    if (wet) file.write("wall_contacts/bridge", liquid);
 }
 
 void write_fluid(Hdf5Writer& file, const FluidOnGrains& fluid) {

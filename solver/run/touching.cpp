@@ -69,6 +69,16 @@ double contact_energy(const ContactModel& model, std::int32_t a, std::int32_t b,
         model.contact, model.rolling);
 }
 
+/// Energy of a bridge [J], 0 without one.
+double bridge_energy(const ContactModel& model, std::int32_t a, std::int32_t b, double overlap, double inverse_radius,
+                     double liquid) {
+    const auto* bridges = liquid_bridges(model);
+    if (bridges == nullptr || !(liquid > 0.0)) return 0.0;
+    const LiquidBridge& law = bridges->of(a, b);
+    const double at_contact = LiquidBridge::attraction(law.parameters, 0.0, liquid, inverse_radius);
+    return -law.work_to_rupture(std::max(-overlap, 0.0), liquid, inverse_radius) - at_contact * std::max(overlap, 0.0);
+}
+
 std::array<double, 6> pair_memory(const Neighbours& list, std::size_t pair) {
     std::array<double, 6> memory{};
     for (int h = 0; h < list.history; ++h) memory[static_cast<std::size_t>(h)] = list.remembered(pair, h);
@@ -90,15 +100,18 @@ std::vector<TouchingPair> touching_pairs(const GrainSystem& system, double dt) {
         const auto i = static_cast<std::size_t>(list.i[p]), j = static_cast<std::size_t>(list.j[p]);
         const Vec3 dx = system.domain.minimum_image(g.x[i] - g.x[j]);
         const double distance = dx.norm(), reach = g.radius[i] + g.radius[j];
-        if (!(distance < reach)) continue;
+        const double liquid = list.bridges ? list.bridge[p] : 0.0;
+        if (!(distance < reach) && !(liquid > 0.0)) continue;
         const Vec3 normal = dx / distance;
         const Vec3 spin = g.radius[i] * g.omega[i] + g.radius[j] * g.omega[j];
         const Vec3 velocity = g.v[i] - g.v[j] - (distance / reach) * spin.cross(normal);
         const Sliding sliding{tangential(velocity, normal), tangential(g.omega[i] - g.omega[j], normal)};
-        const double energy =
-            contact_energy(system.contact, g.group[i], g.group[j], reach - distance,
-                           1.0 / g.radius[i] + 1.0 / g.radius[j], pair_memory(list, p), sliding, normal, dt);
-        pairs.push_back({std::min(g.id[i], g.id[j]), std::max(g.id[i], g.id[j]), reach - distance, energy});
+        const double overlap = reach - distance, inverse_radius = 1.0 / g.radius[i] + 1.0 / g.radius[j];
+        double energy = bridge_energy(system.contact, g.group[i], g.group[j], overlap, inverse_radius, liquid);
+        if (overlap > 0.0)
+            energy += contact_energy(system.contact, g.group[i], g.group[j], overlap, inverse_radius,
+                                     pair_memory(list, p), sliding, normal, dt);
+        pairs.push_back({std::min(g.id[i], g.id[j]), std::max(g.id[i], g.id[j]), overlap, energy, liquid});
     }
     std::sort(pairs.begin(), pairs.end(), [](const TouchingPair& a, const TouchingPair& b) {
         return std::tie(a.first, a.second) < std::tie(b.first, b.second);
@@ -115,17 +128,22 @@ std::vector<TouchingWall> touching_walls(const GrainSystem& system, double dt) {
         for (const WallContact& contact : system.wall_contacts.contacts[q]) {
             const WallBody& wall = system.walls[static_cast<std::size_t>(contact.wall)];
             const auto note = [&](const WallPoint& point) {
-                if (point.element != contact.element || !(point.distance < g.radius[k])) return;
+                if (point.element != contact.element || (!(point.distance < g.radius[k]) && !(contact.bridge > 0.0)))
+                    return;
                 const Vec3 surface = g.radius[k] * g.omega[k];
                 const Vec3 velocity =
                     g.v[k] - wall.velocity - (point.distance / g.radius[k]) * surface.cross(point.normal);
                 const Sliding sliding{tangential(velocity, point.normal), tangential(g.omega[k], point.normal)};
                 const double overlap = g.radius[k] - point.distance;
-                const double energy = contact_energy(system.contact, g.group[k], wall.material, overlap,
-                                                     1.0 / g.radius[k], contact.stretch, sliding, point.normal, dt);
-                contacts.push_back({contact.grain, contact.wall, contact.element, overlap, energy, contact.force});
+                double energy = bridge_energy(system.contact, g.group[k], wall.material, overlap, 1.0 / g.radius[k],
+                                              contact.bridge);
+                if (overlap > 0.0)
+                    energy += contact_energy(system.contact, g.group[k], wall.material, overlap, 1.0 / g.radius[k],
+                                             contact.stretch, sliding, point.normal, dt);
+                contacts.push_back(
+                    {contact.grain, contact.wall, contact.element, overlap, energy, contact.force, contact.bridge});
             };
-            wall.touch(g.x[k], g.radius[k], system.time, note);
+            wall.touch(g.x[k], g.radius[k] + system.neighbours.reach, system.time, note);
         }
     }
     std::sort(contacts.begin(), contacts.end(), [](const TouchingWall& a, const TouchingWall& b) {

@@ -73,6 +73,7 @@ void read_grain_system(Table& root, GrainSystem& system) {
         system.injectors.push_back(make_injector(table, system.groups, system.domain, system.walls));
         system.injected.push_back(nothing_injected(system.injectors.back()));
     }
+    check_bridges(system, root.file());
     if (system.grains.size() == 0 && system.injectors.empty())
         root.fail("grains", "no grains at the start and no injector");
 }

@@ -1,10 +1,13 @@
 #include "schemes/stable_step.hpp"
 
+#include "core/errors.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace plumb {
 
@@ -73,7 +76,7 @@ double common_interval(Table& time, double output_interval, const std::vector<do
 
 } // namespace
 
-std::vector<PairTime> contact_times(const GrainSystem& system, double speed) {
+std::vector<SizePair> least_pairs(const GrainSystem& system) {
     std::vector<Extremes> least(system.groups.size());
     for (std::size_t k = 0; k < system.grains.size(); ++k) {
         Extremes& e = least[static_cast<std::size_t>(system.grains.group[k])];
@@ -88,27 +91,68 @@ std::vector<PairTime> contact_times(const GrainSystem& system, double speed) {
         least[group].mass = std::min(least[group].mass, system.groups[group].density * sphere_volume(d));
     }
     const std::size_t groups = system.groups.size(), materials = groups + system.walls.size();
-    std::vector<PairTime> times;
+    std::vector<SizePair> pairs;
     for (std::size_t a = 0; a < groups; ++a)
         for (std::size_t b = a; b < materials; ++b) {
             if (!std::isfinite(least[a].mass) || (b < groups && !std::isfinite(least[b].mass))) continue;
             const bool wall = b >= groups;
             const double inverse_mass = 1.0 / least[a].mass + (wall ? 0.0 : 1.0 / least[b].mass);
             const double inverse_radius = 1.0 / least[a].radius + (wall ? 0.0 : 1.0 / least[b].radius);
-            const auto time = [&](const auto& pairs) {
-                const auto& law = pairs.of(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
-                return law.contact_time(inverse_mass, inverse_radius, speed);
-            };
-            times.push_back({a, b, std::visit(time, system.contact.contact)});
+            const double smaller = wall ? least[a].radius : std::min(least[a].radius, least[b].radius);
+            const double lighter = wall ? least[a].mass : std::min(least[a].mass, least[b].mass);
+            pairs.push_back({a, b, inverse_mass, inverse_radius, smaller, lighter});
         }
+    return pairs;
+}
+
+std::vector<PairTime> contact_times(const GrainSystem& system, double speed) {
+    std::vector<PairTime> times;
+    for (const SizePair& pair : least_pairs(system)) {
+        const auto time = [&](const auto& pairs) {
+            const auto& law = pairs.of(static_cast<std::int32_t>(pair.a), static_cast<std::int32_t>(pair.b));
+            return law.contact_time(pair.inverse_mass, pair.inverse_radius, speed);
+        };
+        times.push_back({pair.a, pair.b, std::visit(time, system.contact.contact)});
+    }
     return times;
+}
+
+std::vector<PairBridge> least_bridges(const GrainSystem& system) {
+    std::vector<PairBridge> bridges;
+    const auto* laws = liquid_bridges(system.contact);
+    if (laws == nullptr) return bridges;
+    for (const SizePair& pair : least_pairs(system)) {
+        const LiquidBridge& law = laws->of(static_cast<std::int32_t>(pair.a), static_cast<std::int32_t>(pair.b));
+        const double volume = LiquidBridge::formed_volume(law.parameters, pair.smaller_radius);
+        if (volume > 0.0) bridges.push_back({pair, law, volume});
+    }
+    return bridges;
+}
+
+void check_bridges(const GrainSystem& system, const std::string& file) {
+    for (const PairBridge& bridge : least_bridges(system)) {
+        const double radius = 2.0 / bridge.pair.inverse_radius, ratio = bridge.volume / (radius * radius * radius);
+        if (ratio > LiquidBridge::largest_volume * (1.0 + 1e-12))
+            throw InputError(
+                fmt::format("{}: contact.cohesion.volume: {} m3 is {:.3g} R^3 for R = {:.6g} m, the reduced "
+                            "radius of the smallest grains; the law holds up to {} R^3",
+                            file, bridge.volume, ratio, radius, LiquidBridge::largest_volume));
+    }
 }
 
 std::vector<StepLimit> grain_limits(const GrainSystem& system, double fluid_speed) {
     double shortest = std::numeric_limits<double>::infinity();
     for (const PairTime& pair : contact_times(system, impact_speed(system, fluid_speed)))
         shortest = std::min(shortest, pair.seconds);
-    return {{"contact", shortest / steps_per_contact, "shortest contact time / 20"}};
+    std::vector<StepLimit> limits{{"contact", shortest / steps_per_contact, "shortest contact time / 20"}};
+    const std::vector<PairBridge> bridges = least_bridges(system);
+    if (bridges.empty()) return limits;
+    double steepest = 0.0; // [1/s2] of slope over mass
+    for (const PairBridge& b : bridges)
+        steepest = std::max(steepest, b.law.greatest_slope(b.volume, b.pair.inverse_radius) * b.pair.inverse_mass);
+    limits.push_back({"bridge", std::numbers::pi / std::sqrt(steepest) / steps_per_contact,
+                      "pi sqrt(m*/steepest slope of a bridge's force) / 20"});
+    return limits;
 }
 
 Timing timing(Table& time, std::vector<StepLimit> limits, const std::vector<double>& probe_intervals) {

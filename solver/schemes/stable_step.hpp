@@ -34,11 +34,32 @@ struct PairTime {
     double seconds;   // infinite when they pass through each other
 };
 
+/// The smallest grains of two materials, there or to come.
+struct SizePair {
+    std::size_t a, b;      // as above
+    double inverse_mass;   // 1/m_a + 1/m_b, a wall's is 0 [1/kg]
+    double inverse_radius; // 1/R_a + 1/R_b likewise [1/m]
+    double smaller_radius; // [m]
+    double lighter_mass;   // [kg]
+};
+std::vector<SizePair> least_pairs(const GrainSystem& system);
+
+/// The bridge between the smallest grains of two materials.
+struct PairBridge {
+    SizePair pair;
+    LiquidBridge law;
+    double volume; // [m3]
+};
+std::vector<PairBridge> least_bridges(const GrainSystem& system);
+
+/// InputError when a bridge has more liquid than its law is made for.
+void check_bridges(const GrainSystem& system, const std::string& file);
+
 /// One entry per pair of materials of which grains exist. `speed` [m/s] is that of the impact, for Hertzian contacts.
 std::vector<PairTime> contact_times(const GrainSystem& system, double speed);
 
-/// Limits of the grains: the shortest contact time over `steps_per_contact`. A fluid carries grains at up to
-/// `fluid_speed` [m/s].
+/// Limits of the grains: the shortest contact time over `steps_per_contact`, and with liquid bridges as many steps in
+/// the time in which the steepest one pulls two grains together. A fluid carries grains at up to `fluid_speed` [m/s].
 std::vector<StepLimit> grain_limits(const GrainSystem& system, double fluid_speed = 0.0);
 
 /// Reads the [time] table and chooses the step. An automatic one divides the output interval and all

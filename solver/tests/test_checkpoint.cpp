@@ -9,6 +9,7 @@
 
 #include "checkpoint_scenes.hpp"
 #include "corrected_grid_scene.hpp"
+#include "lumps_scene.hpp"
 #include "medium_scene.hpp"
 
 #include <gmock/gmock.h>
@@ -127,8 +128,8 @@ TEST_P(Checkpoint, RunsAreTheSameForAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint,
-                         testing::Values(dry, wet, flowing, passing, published, on_grid, medium_on_grid, grains_on_grid,
-                                         corrected_on_grid));
+                         testing::Values(dry, lumps, wet, flowing, passing, published, on_grid, medium_on_grid,
+                                         grains_on_grid, corrected_on_grid));
 
 std::string complaint(const std::string& path) {
     try {

@@ -2,13 +2,16 @@
 #include "run/command_line.hpp"
 #include "run/law_list.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 #include <unistd.h>
 
@@ -198,6 +201,27 @@ TEST_F(CommandLine, CheckPrintsDerivedNumbersAndWritesNothing) {
     const Answer text = answer({"check", path("scene.toml")});
     EXPECT_THAT(text.out, HasSubstr("100 steps"));
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+TEST_F(CommandLine, CheckNamesTheBondNumberOfBridges) {
+    const std::string contact =
+        "grains.contact={{law='linear_spring', stiffness=1e3, restitution=0.5, friction=0.0, "
+        "cohesion={{law='liquid_bridge', surface_tension=0.07, contact_angle=0.5, volume={}}}}}";
+    const Answer a =
+        answer({"check", path("scene.toml"), "--json", "--set", fmt::format(fmt::runtime(contact), "1e-13")});
+    ASSERT_EQ(a.code, 0) << a.err;
+    const auto bridges = nlohmann::json::parse(a.out)["time"]["bridges"];
+    ASSERT_FALSE(bridges.empty());
+    const auto& pair = bridges[0];
+    const double pull = 2.0 * std::numbers::pi * 5e-4 * 0.07 * std::cos(0.5); // d = 1 mm, of its like
+    const double weight = 2500.0 * std::numbers::pi / 6.0 * 1e-9 * 9.81;
+    EXPECT_NEAR(pair["Bo"].get<double>() * pull / weight, 1.0, 1e-12);
+    EXPECT_NEAR(pair["largest_Bo"].get<double>() * pull / weight, 1.0, 1e-12);
+    EXPECT_NEAR(pair["volume_over_R3"].get<double>(), 8e-4, 1e-15);
+    EXPECT_THAT(answer({"check", path("scene.toml"), "--set", fmt::format(fmt::runtime(contact), "1e-13")}).out,
+                HasSubstr("Bo = "));
+    EXPECT_THAT(complaint({"check", path("scene.toml"), "--set", fmt::format(fmt::runtime(contact), "2e-11")}, 2),
+                HasSubstr("cohesion.volume"));
 }
 
 TEST_F(CommandLine, LawsAndVersion) {
