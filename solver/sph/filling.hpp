@@ -6,11 +6,11 @@ namespace plumb {
 
 struct SphFluid;
 
-/// Lets densities follow how full the room is, within `filling_time` T: d rho_a/dt += rho_a (C_a - 1)/T with C_a =
+/// Lets densities follow how full the room is, within `filling_time` T: d rho_a/dt += rho_a (C_a - <C>)/T with C_a =
 /// sum_b V_b W, particles of walls and open sides among the b. What gathers is pushed apart, and a volume that sums
-/// lose at a rate e is kept within e T. Disorder makes C some per mille too great, hence T short against what sums lose
-/// and long against that. (A new start of the densities would set C at once, with all its noise: Colagrossi & Landrini
-/// 2003, J. Comput. Phys. 191, 448, sec. 3.3.)
+/// lose at a rate e somewhere is kept within e T. The mean over all particles is taken off: disorder makes C some per
+/// mille too great everywhere. (A new start of the densities would set C at once, with all its noise: Colagrossi &
+/// Landrini 2003, J. Comput. Phys. 191, 448, sec. 3.3.)
 void follow_filling(SphFluid& fluid);
 
 } // namespace plumb
