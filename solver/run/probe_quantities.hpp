@@ -273,7 +273,7 @@ using ProbeQuantity =
                  GrainKineticEnergy, GrainContactEnergy, GrainPotentialEnergy, GrainTotalEnergy, GrainMomentum,
                  GrainAngularMomentum, GranularTemperature, GrainCount, ContactCount, CoordinationNumber, MaxOverlap,
                  WallForce, PackingFraction, GrainFluidForce, GrainDragForce, GrainVelocities, GrainAngularVelocities,
-                 FluidKineticEnergy, FluidMeanVelocity, FluidGreatestSpeed, FluidVelocityWave, FluidMeanPressure,
-                 FluidGreatestPressure, FluidFlowRate>;
+                 FluidKineticEnergy, FluidMeanVelocity, FluidGreatestSpeed, FluidSecondMoment, FluidVelocityWave,
+                 FluidMeanPressure, FluidGreatestPressure, FluidFlowRate>;
 
 } // namespace plumb

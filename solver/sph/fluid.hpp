@@ -11,6 +11,7 @@
 #include "sph/open_boundaries.hpp"
 #include "sph/pair_terms.hpp"
 #include "sph/sources.hpp"
+#include "sph/surface_tension.hpp"
 
 #include <array>
 #include <cstdint>
@@ -63,6 +64,7 @@ struct SphFluid {
     FluidClusters clusters;
     CorrectedFields corrected; // of the last evaluation; empty with plain operators
     VariableLengths lengths;
+    Surface surface; // its tension
     std::vector<FluidWall> walls;
     std::vector<OpenSide> open_sides;
     BoundaryParticles boundary; // of walls and open sides
