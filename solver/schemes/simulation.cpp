@@ -237,7 +237,8 @@ void make_sph_alone(Table& root, Simulation& s) {
 /// Smoothed particles and grains, each acting on the other.
 void make_coupled(Table& root, Simulation& s) {
     make_sph(root, s);
-    if (surface_tension(s.sph->surface) > 0.0) root.table("fluid").fail("surface", "grains know no surface tension yet");
+    if (surface_tension(s.sph->surface) > 0.0)
+        root.table("fluid").fail("surface", "grains know no surface tension yet");
     read_grain_system(root, s.grains);
     s.grains.integrator = Integrator::velocity_verlet;
     Table coupling = root.table("coupling"), time = root.table("time");

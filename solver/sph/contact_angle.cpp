@@ -39,6 +39,7 @@ template <class KernelLaw> Continued continued(const SphFluid& f, std::size_t k,
     const BoundaryParticles& b = f.boundary;
     const Vec3 x = vector_at(b.x, k, f.dimensions), mirror = vector_at(b.mirror, k, f.dimensions),
                normal = vector_at(b.normal, k, f.dimensions);
+    const double depth = 0.5 * (mirror - x).norm();
     const double cosine = b.cos_contact[k], sine = std::sqrt(1.0 - cosine * cosine);
     Continued sum;
     for (const std::int32_t record : near) {
@@ -51,9 +52,16 @@ template <class KernelLaw> Continued continued(const SphFluid& f, std::size_t k,
         if (length < 0.1) continue; // the surface runs along the wall
         const double q = (Vec3(at.x, at.y, at.z) - mirror).norm() / f.h;
         if (q >= KernelLaw::support) continue;
-        const double weight = s.weight * KernelLaw::w(q);
-        const Vec3 towards = sine / length * along - cosine * normal;
-        sum.distance += weight * towards.dot(x - Vec3(s.x, s.y, s.z));
+        // Beside the wall the layer is itself made with these colours: what is farther away tells more.
+        const double away = ((Vec3(at.x, at.y, at.z) - mirror).dot(normal) + depth) / f.h;
+        const double weight = s.weight * KernelLaw::w(q) * std::min(away * away, 1.0);
+        // An arc from the layer's point to the wall, its chord between both directions; from there on straight.
+        const Vec3 towards = sine / length * along - cosine * normal, chord = n + towards;
+        const Vec3 point(s.x, s.y, s.z);
+        const double height = (point - mirror).dot(normal) + depth, run = chord.dot(along) / length;
+        if (run < 0.1) continue;
+        const Vec3 line = point - height * normal + height * chord.dot(normal) / (run * length) * along;
+        sum.distance += weight * towards.dot(x - line);
         sum.weight += weight;
     }
     sum.distance /= std::max(sum.weight, 1e-300);

@@ -16,7 +16,7 @@ namespace {
 constexpr double layer_from = 0.2, layer_whole = 0.4;
 // Share of the kernel's weight that has to lie in the layer for its curvature to count wholly: it fades at about two
 // kernel lengths from the surface.
-constexpr int continuations = 4; // of the surface into walls, each from the layer that the last one made
+constexpr int continuations = 2; // of the surface into walls, each from the layer that the last one made
 constexpr double least_layer = 0.05;
 
 double layer_weight(double steepness) { // G over that of a flat surface
