@@ -127,8 +127,8 @@ TEST_P(Checkpoint, RunsAreTheSameForAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint,
-                         testing::Values(dry, wet, flowing, passing, published, on_grid, medium_on_grid, grains_on_grid,
-                                         corrected_on_grid));
+                         testing::Values(dry, wet, flowing, passing, drop, published, on_grid, medium_on_grid,
+                                         grains_on_grid, corrected_on_grid));
 
 std::string complaint(const std::string& path) {
     try {

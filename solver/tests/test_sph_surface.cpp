@@ -233,6 +233,12 @@ TEST(SphSurface, Scenes) {
     expect_refused(drop_text(disc("1.0", "1.0"), {{"surface", "{law = \"continuum_surface_force\", tension = -1.0}"}}),
                    {"fluid.surface.tension", "-1"});
     expect_refused(drop_text(disc("1.0", "1.0"), {{"surface", "\"soap\""}}), {"fluid.surface", "soap", "none"});
+    const std::string floor = "[[wall]]\nname = \"floor\"\nshape = \"plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n"
+                              "slip = \"free_slip\"\n";
+    const std::string tense = drop_text(disc("1.0", "1.0")), slack = drop_text(disc("1.0", "1.0"), {{"surface", ""}});
+    expect_refused(tense + floor, {"fluid.surface", "a wall without contact_angle"});
+    expect_refused(slack + floor + "contact_angle = 90.0\n", {"fluid.surface", "a wall has a contact_angle"});
+    expect_refused(tense + floor + "contact_angle = 180.0\n", {"contact_angle", "180"});
 }
 
 // An ellipse that is a circle, or one about another middle.
