@@ -9,6 +9,7 @@
 
 #include "checkpoint_scenes.hpp"
 #include "corrected_grid_scene.hpp"
+#include "drop_scene.hpp"
 #include "medium_scene.hpp"
 
 #include <gmock/gmock.h>
