@@ -132,16 +132,24 @@ Json sph_part(const Simulation& s) {
     for (std::size_t k = 0; k < f.slots(); ++k)
         fastest = std::max(fastest, std::hypot(f.v[0][k], f.v[1][k], f.dimensions == 3 ? f.v[2][k] : 0.0));
     const double nu = f.viscosity / f.density, none = std::numeric_limits<double>::infinity();
-    return {{"particles", f.particles},
-            {"dimensions", f.dimensions},
-            {"kernel", law_name(f.kernel)},
-            {"h", f.h},
-            {"sound_speed", f.sound_speed},
-            {"speed", fastest},
-            {"Mach", fastest / f.sound_speed},
-            {"Re_per_m", nu > 0.0 ? fastest / nu : none},
-            {"acoustic_Re", nu > 0.0 ? f.h * f.sound_speed / nu : none},
-            {"artificial_nu", artificial_nu(f)}};
+    Json part{{"particles", f.particles},
+              {"dimensions", f.dimensions},
+              {"kernel", law_name(f.kernel)},
+              {"h", f.h},
+              {"sound_speed", f.sound_speed},
+              {"speed", fastest},
+              {"Mach", fastest / f.sound_speed},
+              {"Re_per_m", nu > 0.0 ? fastest / nu : none},
+              {"acoustic_Re", nu > 0.0 ? f.h * f.sound_speed / nu : none},
+              {"artificial_nu", artificial_nu(f)}};
+    const double tension = surface_tension(f.surface), g = f.body_force.norm();
+    if (tension == 0.0) return part;
+    part["tension"] = tension;
+    part["Laplace_per_m"] = f.viscosity > 0.0 ? f.density * tension / (f.viscosity * f.viscosity) : none;
+    part["capillary_length"] = g > 0.0 ? std::sqrt(tension / (f.density * g)) : none;
+    part["Weber_of_h"] = f.density * fastest * fastest * f.h / tension;
+    part["capillary_Mach_of_h"] = std::sqrt(tension / (f.density * f.h)) / f.sound_speed;
+    return part;
 }
 
 /// Seconds on one core and bytes that the grains of a coupled scene add to a step of the fluid.
@@ -311,6 +319,12 @@ void print_sph(const Json& part, std::string& text) {
                     part["particles"].get<std::int64_t>(), part["dimensions"].get<int>(),
                     part["kernel"].get<std::string>(), number("h"), number("sound_speed"), number("speed"),
                     number("Mach"), number("Re_per_m"), number("acoustic_Re"), number("artificial_nu"));
+    if (!part.contains("tension")) return;
+    text +=
+        fmt::format("  surface       tension {:.4g} N/m, Laplace number/length {:.4g} 1/m, capillary length {:.4g} m; "
+                    "of h: Weber number {:.3g}, Mach number sqrt(tension/(rho h))/c {:.3g}\n",
+                    number("tension"), number("Laplace_per_m"), number("capillary_length"), number("Weber_of_h"),
+                    number("capillary_Mach_of_h"));
 }
 
 void print_grid(const Json& part, std::string& text) {

@@ -95,6 +95,17 @@ double FluidGreatestSpeed::operator()(const Sample& s) const {
     return std::sqrt(largest);
 }
 
+FluidSecondMoment::FluidSecondMoment(Table& table) : axis(axis_of(table, "axis")) {}
+void FluidSecondMoment::bind(const Simulation& s, const Table& t) {
+    if (!s.sph) t.fail("quantity", "needs a fluid with method \"sph\"");
+    demand_computed_fluid(s, t);
+}
+double FluidSecondMoment::operator()(const Sample& s) const {
+    const SphFluid& f = *s.simulation.sph;
+    const double middle = mean(f, [&](std::size_t k) { return f.x[axis][k]; });
+    return mean(f, [&](std::size_t k) { return (f.x[axis][k] - middle) * (f.x[axis][k] - middle); });
+}
+
 FluidVelocityWave::FluidVelocityWave(Table& table)
     : axis(axis_of(table, "axis")), along(axis_of(table, "along")),
       waves(static_cast<double>(table.integer("waves", 1, 1000))),

@@ -36,6 +36,16 @@ struct FluidGreatestSpeed {
     double operator()(const Sample& s) const;
 };
 
+/// Variance of the particles' places along an axis: R^2/4 of a disc, R^2/5 of a ball. Not across periodic sides.
+struct FluidSecondMoment {
+    static constexpr std::string_view name = "fluid_second_moment", units = "m2";
+    static constexpr LawInfo info{"mean of (x[axis] - its mean)^2 over particles", "sph", "definition"};
+    std::size_t axis;
+    explicit FluidSecondMoment(Table& table);
+    static void bind(const Simulation& s, const Table& t);
+    double operator()(const Sample& s) const;
+};
+
 /// Amplitude of one wave in a velocity component, by projection: 2/n sum v[axis] sin(k x) or cos(k x).
 struct FluidVelocityWave {
     static constexpr std::string_view name = "fluid_velocity_wave", units = "m/s";

@@ -19,6 +19,7 @@ std::vector<LawFamily> law_families() {
                                     {"fluid.operators", law_entries<Operators>()},
                                     {"fluid.viscous_term", law_entries<ViscousTerm>()},
                                     {"fluid.source", law_entries<Source>()},
+                                    {"fluid.surface", law_entries<SurfaceLaw>()},
                                     {"fluid.initial", law_entries<InitialField>()},
                                     {"fluid.advection (grid)", law_entries<Advection>()},
                                     {"fluid.porosity (grid)", law_entries<MediumPorosity>()},

@@ -279,7 +279,7 @@ using ProbeQuantity =
                  GrainKineticEnergy, GrainContactEnergy, GrainPotentialEnergy, GrainTotalEnergy, GrainMomentum,
                  GrainAngularMomentum, GranularTemperature, GrainCount, ContactCount, BridgeCount, CoordinationNumber,
                  MaxOverlap, WallForce, PackingFraction, GrainFluidForce, GrainDragForce, GrainVelocities,
-                 GrainAngularVelocities, FluidKineticEnergy, FluidMeanVelocity, FluidGreatestSpeed, FluidVelocityWave,
-                 FluidMeanPressure, FluidGreatestPressure, FluidFlowRate>;
+                 GrainAngularVelocities, FluidKineticEnergy, FluidMeanVelocity, FluidGreatestSpeed, FluidSecondMoment,
+                 FluidVelocityWave, FluidMeanPressure, FluidGreatestPressure, FluidFlowRate>;
 
 } // namespace plumb

@@ -63,8 +63,26 @@ void read_walls(Table& coupling, Coupling& c, const GrainSystem& grains) {
                                            wall.name));
 }
 
+/// A round wall that holds grains inside mirrors them beyond itself, as far as its middle.
+void check_mirrors(Table& coupling, const Coupling& c, const GrainSystem& grains) {
+    if (!c.places.mirrored.wanted) return;
+    const double reach = porosity_reach(c.weights);
+    for (const WallBody& wall : grains.walls)
+        std::visit(
+            [&](const auto& shape) {
+                using Shape = std::decay_t<decltype(shape)>;
+                if constexpr (std::is_same_v<Shape, Cylinder> || std::is_same_v<Shape, SphereWall>)
+                    if (shape.sign < 0.0 && shape.radius <= reach)
+                        coupling.fail("at_walls",
+                                      fmt::format("\"mirrored\": wall \"{}\" of radius {:.4g} m is narrower than the "
+                                                  "kernel's reach of {:.4g} m",
+                                                  wall.name, shape.radius, reach));
+            },
+            wall.shape);
+}
+
 /// How the pressure acts on grains. Without the key they gather its gradient and hand their part on.
-void read_pressure_force(Table& coupling, const Coupling& c, SphFluid& fluid) {
+void read_pressure_force(Table& coupling, const Coupling& c, const GrainSystem& grains, SphFluid& fluid) {
     const char* const key = "pressure_force";
     fluid.shares_pressure = coupling.has(key) && coupling.choice(key, {"shared", "gathered"}) == "shared";
     if (!fluid.shares_pressure && fluid.background_pressure > 0.0)
@@ -72,6 +90,9 @@ void read_pressure_force(Table& coupling, const Coupling& c, SphFluid& fluid) {
     if (!fluid.shares_pressure) return;
     if (!std::holds_alternative<KernelPorosity>(c.weights.porosity))
         coupling.fail(key, "\"shared\" needs porosity = \"kernel\"");
+    if (!grains.walls.empty() && !c.places.mirrored.wanted)
+        coupling.fail(key, "\"shared\" needs at_walls = \"mirrored\" beside walls: where the grains' room is cut, a "
+                           "constant pressure would push them to the wall");
     if (c.self) coupling.fail(key, "\"shared\" and self_disturbance: the wake's pressure is not known to its theory");
     const std::vector<std::string> forces = coupling.texts("forces");
     if (std::find(forces.begin(), forces.end(), "pressure_gradient") == forces.end())
@@ -154,8 +175,9 @@ Coupling read_coupling(Table& coupling, SphFluid& fluid, const GrainSystem& grai
             fmt::format("the kernel reaches {:.4g} m, less than the radius of a grain of {:.4g} m", least, d));
     if (c.places.mirrored.wanted)
         prepare_mirrors(c.places.mirrored, grains.walls, {c.weights.kernel, c.weights.h.porosity});
+    check_mirrors(coupling, c, grains);
     read_self_disturbance(coupling, c, fluid, grains);
-    read_pressure_force(coupling, c, fluid);
+    read_pressure_force(coupling, c, grains, fluid);
     read_suspension_viscosity(coupling, c, fluid);
     check_periodic_sides(fluid.domain, reach(c.weights) + fluid.clusters.skin, coupling.file());
     return c;

@@ -110,6 +110,12 @@ OneForcing no_forcing(const Vec3& velocity) {
     return one;
 }
 
+/// The part of the pressure's force on a grain that its fluid does not lose, since it never had it [N].
+Vec3 shared_force(const FluidOnGrains& f, std::int32_t id, double diameter) {
+    if (!f.shares_pressure) return Vec3::Zero();
+    return sphere_volume(diameter) * f.at_grains.stress[static_cast<std::size_t>(id)];
+}
+
 OneForcing forcing_of_grain(FluidOnGrains& f, const GrainSystem& system, const BassetKernel* kernel, std::size_t k,
                             double dt) {
     const Grains& g = system.grains;
@@ -137,7 +143,8 @@ OneForcing forcing_of_grain(FluidOnGrains& f, const GrainSystem& system, const B
         const Vec3 acceleration = g.a[k] + one.other;
         // What the grain receives but by drag the fluid loses: its mass times the acceleration, less what comes from
         // contacts, gravity and outside; `local.u` does not know of it.
-        const Vec3 lost = acceleration - g.a[k] / (mobility * g.mass[k]) - outside / g.mass[k];
+        const Vec3 lost =
+            acceleration - g.a[k] / (mobility * g.mass[k]) - (outside + shared_force(f, g.id[k], d)) / g.mass[k];
         one.u = (local.u + load * (v + (0.5 * dt) * (acceleration - lost))) / both;
         std::visit(
             [&](const auto& exchange) {
@@ -231,7 +238,8 @@ OneForcing write_fixed(FluidOnGrains& f, const GrainSystem& system, const Basset
     }
     const LocalFluid local = fluid_at_grain(f, system, k, dt);
     const Vec3 other = other_forces(f, local, {d, g.v[k]}, system.domain.gravity);
-    const Vec3 slip = mean_slip(f, local, g, k, other - force_from_outside(f, d, system.domain.gravity), dt);
+    const Vec3 not_lost = force_from_outside(f, d, system.domain.gravity) + shared_force(f, g.id[k], d);
+    const Vec3 slip = mean_slip(f, local, g, k, other - not_lost, dt);
     f.last_drag[id] = drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip.norm()) * slip;
     f.last_fluid_force[id] = f.last_drag[id] + other + history_of_grain(f, system, kernel, k, local, dt);
     OneForcing one;

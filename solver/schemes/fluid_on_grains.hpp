@@ -33,6 +33,7 @@ struct FluidOnGrains {
     std::optional<HistoryForce> history;
     Exchange exchange;
     bool gathers = false;              // the fluid at the grains is gathered from a computed one, not given
+    bool shares_pressure = false;      // that fluid has its part of the pressure already, the grains' is not its loss
     Vec3 mean_gradient = Vec3::Zero(); // of a pressure that drives a computed fluid and its grains alike [Pa/m]
 
     std::optional<BassetKernel> kernel; // of `history` for the step in use: set by set_inertia

@@ -238,11 +238,14 @@ void make_sph_alone(Table& root, Simulation& s) {
 /// Smoothed particles and grains, each acting on the other.
 void make_coupled(Table& root, Simulation& s) {
     make_sph(root, s);
+    if (surface_tension(s.sph->surface) > 0.0)
+        root.table("fluid").fail("surface", "grains know no surface tension yet");
     read_grain_system(root, s.grains);
     s.grains.integrator = Integrator::velocity_verlet;
     Table coupling = root.table("coupling"), time = root.table("time");
     s.coupling = read_coupling(coupling, *s.sph, s.grains);
     s.fluid = fluid_on_grains(coupling, *s.sph);
+    s.fluid->shares_pressure = s.sph->shares_pressure;
     couple(*s.coupling, *s.sph, s.grains, coupling.choice("fluid_mass", {"displaced", "pure"}) == "displaced");
     check_growth(coupling, *s.sph);
     drive(coupling, *s.sph, *s.fluid, *s.coupling, s.grains);

@@ -10,16 +10,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace plumb {
 
 namespace {
 
-// Shares of the four times: Morris, Fox & Zhu 1997, eq. 20 (0.25 h/c); of the stable step of the viscous operator, 1
+// Shares of the five times: Morris, Fox & Zhu 1997, eq. 20 (0.25 h/c); of the stable step of the viscous operator, 1
 // over its greatest rate (verification/step_limits), which disorder raises up to 1.55 times (verification/disorder); 1
 // over the greatest rate of shifting, half of what is stable, with which no shift goes beyond the even place; Monaghan
-// 1992 (0.25 sqrt(h/f)).
-constexpr double acoustic_share = 0.25, viscous_share = 0.6, shifting_share = 1.0, force_share = 0.25;
+// 1992 (0.25 sqrt(h/f)); Adami, Hu & Adams 2010, J. Comput. Phys. 229, 5011 (0.25, after Brackbill et al. 1992).
+constexpr double acoustic_share = 0.25, viscous_share = 0.6, shifting_share = 1.0, force_share = 0.25,
+                 capillary_share = 0.25;
 
 // Skin of the neighbour lists in spacings: wider ones are renewed less often but hold more pairs out of reach.
 constexpr double skin_in_spacings = 0.25;
@@ -103,6 +105,20 @@ void read_source(Table& table, SphFluid& f) {
     if (!table.has("source")) return;
     f.source = make_family<Source>(table.law("source"));
     if (std::holds_alternative<ManufacturedSource>(f.source)) check_manufactured_box(table, "source", f.domain.size);
+}
+
+/// Surface tension, if there is any; then, and only then, walls have a contact angle.
+void read_surface(Table& table, SphFluid& f) {
+    if (table.has("surface")) f.surface.law = make_family<SurfaceLaw>(table.law("surface"));
+    const bool tense = !std::holds_alternative<NoSurfaceTension>(f.surface.law);
+    for (const FluidWall& wall : f.walls)
+        if (tense == std::isnan(wall.cos_contact))
+            table.fail("surface", tense ? "a wall without contact_angle" : "none, but a wall has a contact_angle");
+    if (!tense) return;
+    if (!f.free_surface) table.fail("surface", "without free_surface = true there is none that could have a tension");
+    if (!std::holds_alternative<PlainOperators>(f.operators))
+        table.fail("surface", "surface tension needs operators = \"plain\"");
+    f.surface.profile = colour_profile(f.kernel, f.dimensions);
 }
 
 /// The box must hold a whole number of spacings along every axis, and no more particles than an id can count.
@@ -205,6 +221,9 @@ std::vector<FluidWall> read_fluid_walls(std::vector<Table>& tables, const Domain
             if (domain.dimensions == 2) tables[k].fail("shape", "\"stl\" in a scene of two dimensions");
             wall.fluid_is_inside = tables[k].choice("fluid_side", {"inside", "outside"}) == "inside";
         }
+        if (tables[k].has("contact_angle"))
+            wall.cos_contact =
+                std::cos(tables[k].number("contact_angle", {0.0, 180.0, true, true}) * (std::numbers::pi / 180.0));
         walls.push_back(std::move(wall));
     }
     return walls;
@@ -271,6 +290,7 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<Fl
     if (f.keeps_mean_density && (f.free_surface || !open_sides.empty()))
         table.fail("keep_mean_density", "only a closed volume keeps its mean density");
     f.walls = walls;
+    read_surface(table, f);
     f.open_sides = open_sides;
     if (std::holds_alternative<CorrectedOperators>(f.operators)) {
         if (f.free_surface) table.fail("operators", "\"corrected\" knows no free surface");
@@ -301,15 +321,22 @@ std::vector<StepLimit> fluid_limits(const SphFluid& f) {
     const double damping = greatest_viscous_rate(f), diffusion = greatest_diffusion_rate(f);
     const double force = f.body_force.norm();
     const double shift = f.shifting > 0.0 ? f.shifting * greatest_concentration_rate(f) : 0.0;
-    return {{"acoustic", acoustic_share * sound_share(f) * f.h / f.sound_speed,
-             "0.25 h/c, less where nothing damps sound (integrator midpoint, no diffusion, h c/nu > 100)"},
-            {"viscous", damping > 0.0 ? viscous_share / (damping * (1.0 + f.memory)) : none,
-             "0.6 over the greatest rate of the viscous operator on a lattice"},
-            {"shifting", shift > 0.0 ? shifting_share / shift : none,
-             "1 over the greatest rate at which shifting evens out the concentration"},
-            {"diffusion", diffusion > 0.0 ? viscous_share / (diffusion * (1.0 + f.memory)) : none,
-             "0.6 over the greatest rate of density diffusion on a lattice"},
-            {"force", force > 0.0 ? force_share * std::sqrt(f.h / force) : none, "0.25 sqrt(h/f)"}};
+    std::vector<StepLimit> limits{
+        {"acoustic", acoustic_share * sound_share(f) * f.h / f.sound_speed,
+         "0.25 h/c, less where nothing damps sound (integrator midpoint, no diffusion, h c/nu > 100)"},
+        {"viscous", damping > 0.0 ? viscous_share / (damping * (1.0 + f.memory)) : none,
+         "0.6 over the greatest rate of the viscous operator on a lattice"},
+        {"shifting", shift > 0.0 ? shifting_share / shift : none,
+         "1 over the greatest rate at which shifting evens out the concentration"},
+        {"diffusion", diffusion > 0.0 ? viscous_share / (diffusion * (1.0 + f.memory)) : none,
+         "0.6 over the greatest rate of density diffusion on a lattice"},
+        {"force", force > 0.0 ? force_share * std::sqrt(f.h / force) : none, "0.25 sqrt(h/f)"}};
+    if (const double tension = surface_tension(f.surface); tension > 0.0)
+        limits.push_back(
+            {"capillary",
+             capillary_share * std::sqrt(f.density * std::pow(f.h, 3) / (2.0 * std::numbers::pi * tension)),
+             "0.25 sqrt(rho h^3/(2 pi tension)): waves as short as h"});
+    return limits;
 }
 
 } // namespace plumb

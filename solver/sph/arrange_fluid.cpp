@@ -12,6 +12,13 @@ BoxFill::BoxFill(Table& table) {
     upper = table.components("upper", dimensions);
 }
 
+EllipsoidFill::EllipsoidFill(Table& table) {
+    const int dimensions = table.length("centre") == 2 ? 2 : 3;
+    centre = table.components("centre", dimensions);
+    semi_axes = table.components("semi_axes", dimensions, positive);
+    if (dimensions == 2) semi_axes[2] = 1.0; // z is 0
+}
+
 void fill_box(SphFluid& f, double jitter, std::uint64_t seed, const std::function<bool(const Vec3&)>& is_fluid) {
     std::array<std::int64_t, 3> n{1, 1, 1};
     for (int c = 0; c < f.dimensions; ++c) n[static_cast<std::size_t>(c)] = std::llround(f.domain.size[c] / f.spacing);

@@ -36,7 +36,16 @@ struct WaveFill {
     }
 };
 
-using Fill = std::variant<BoxFill, WaveFill>;
+/// A ball or an ellipsoid (circle or ellipse in the plane), axes along those of space.
+struct EllipsoidFill {
+    static constexpr std::string_view name = "ellipsoid";
+    static constexpr LawInfo info{"sum ((x - centre)/semi_axes)^2 <= 1", "any", "definition"};
+    Vec3 centre, semi_axes; // [m]
+    explicit EllipsoidFill(Table& table);
+    bool operator()(const Vec3& x) const { return ((x - centre).array() / semi_axes.array()).square().sum() <= 1.0; }
+};
+
+using Fill = std::variant<BoxFill, WaveFill, EllipsoidFill>;
 
 /// Fills the part of the box where `is_fluid` says so with a square (cubic) lattice of the fluid's spacing, particles
 /// in the middle of their cells, each moved by up to `jitter` spacings along every axis (not out of the fluid). At

@@ -20,7 +20,7 @@ constexpr double least_cover = 0.05; // of the fluid around a mirror point, belo
 /// Calls visit(field) for every field of vectors.
 template <class Visit> void for_each_vector_field(BoundaryParticles& b, Visit&& visit) {
     for (VectorField* field :
-         {&b.x, &b.mirror, &b.velocity, &b.mirror_velocity, &b.x_listed, &b.mirror_listed, &b.excess})
+         {&b.x, &b.mirror, &b.velocity, &b.mirror_velocity, &b.x_listed, &b.mirror_listed, &b.excess, &b.normal})
         visit(*field);
 }
 
@@ -53,6 +53,7 @@ FluidRecord wall_record(SphFluid& f, std::size_t k, const InterpolatedGroup& gro
     const Continuation &rule = b.rule[k], &slip = b.slip[k];
     const Vec3 x = vector_at(b.x, k, f.dimensions), fluid_u = lane_of(group.u, lane);
     const bool wet = group.covered[lane] > least_cover;
+    b.cover[k] = group.covered[lane];
     const Vec3 u = wet ? Vec3(rule.turn * fluid_u + rule.offset) : Vec3(0.5 * rule.offset);
     const Vec3 excess = wet ? Vec3(slip.turn * fluid_u + slip.offset - u) : Vec3(Vec3::Zero());
     for (int c = 0; c < f.dimensions; ++c) b.excess[static_cast<std::size_t>(c)][k] = excess[c];
@@ -116,6 +117,7 @@ void append_boundary_particle(BoundaryParticles& b, int dimensions, const Bounda
         b.x_listed[axis].push_back(particle.x[c]);
         b.mirror_listed[axis].push_back(particle.mirror[c]);
         b.excess[axis].push_back(0.0);
+        b.normal[axis].push_back(particle.normal[c]);
     }
     b.side.push_back(particle.side);
     b.rule.push_back(particle.rule);
@@ -123,6 +125,8 @@ void append_boundary_particle(BoundaryParticles& b, int dimensions, const Bounda
     b.mean_speed.push_back(unknown);
     b.mean_pressure.push_back(unknown);
     b.rho.push_back(unknown);
+    b.cos_contact.push_back(particle.cos_contact);
+    b.cover.push_back(0.0);
     b.share.push_back(1.0);
     b.eps.push_back(1.0);
     b.fastest = std::max(b.fastest, particle.velocity.norm());
@@ -142,6 +146,8 @@ void keep_boundary_particles(BoundaryParticles& b, int dimensions, const std::ve
     keep(b.mean_speed);
     keep(b.mean_pressure);
     keep(b.rho);
+    keep(b.cos_contact);
+    keep(b.cover);
     keep(b.share);
     keep(b.eps);
 }

@@ -27,7 +27,10 @@ struct BoundaryParticles {
     std::vector<std::int32_t> side;        // index of the open side, -1 of walls; walls come first
     std::vector<Continuation> rule;        // of walls: the velocity that friction sees
     std::vector<Continuation> slip; // of walls: the velocity that the continuity equation sees, as if all slipped
-    VectorField excess;             // the latter less the former, at present [m/s]
+    // of walls: into the fluid, cosine of the contact angle, and the share of the fluid around the mirror point
+    VectorField normal;
+    Field<double> cos_contact, cover;
+    VectorField excess; // the latter less the former, at present [m/s]
     // of open sides: slow means at the mirror point of the velocity along the flow and of the pressure; NaN until known
     Field<double> mean_speed, mean_pressure;
     // of open sides among grains: mass over that of a particle of pure fluid, and the fluid fraction at the plane; else
@@ -51,6 +54,8 @@ struct BoundaryParticle {
     Vec3 x, mirror, velocity, mirror_velocity;
     std::int32_t side = -1;
     Continuation rule, slip;
+    Vec3 normal = Vec3::Zero();
+    double cos_contact = 0.0;
 };
 
 void append_boundary_particle(BoundaryParticles& boundary, int dimensions, const BoundaryParticle& particle);

@@ -13,6 +13,7 @@ void evaluate_terms(SphFluid& f) {
     else
         std::visit([&](const auto& kernel) { evaluate_with<std::decay_t<decltype(kernel)>>(f); }, f.kernel);
     correct_continuity(f);
+    add_surface_tension(f);
 }
 
 void keep_mean_density(SphFluid& f) {

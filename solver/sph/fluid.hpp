@@ -11,6 +11,7 @@
 #include "sph/open_boundaries.hpp"
 #include "sph/pair_terms.hpp"
 #include "sph/sources.hpp"
+#include "sph/surface_tension.hpp"
 
 #include <array>
 #include <cstdint>
@@ -65,6 +66,7 @@ struct SphFluid {
     FluidClusters clusters;
     CorrectedFields corrected; // of the last evaluation; empty with plain operators
     VariableLengths lengths;
+    Surface surface; // its tension
     std::vector<FluidWall> walls;
     std::vector<OpenSide> open_sides;
     double mass_at_start = 0.0; // of all particles, which even outlets keep [kg]

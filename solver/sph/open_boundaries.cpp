@@ -96,9 +96,7 @@ void inherit_means(SphFluid& f, std::size_t side) {
 void join_buffer(SphFluid& f, std::size_t side, std::size_t slot) {
     append(f, side, vector_at(f.x, slot, f.dimensions), vector_at(f.v, slot, f.dimensions));
     inherit_means(f, side);
-    if (!f.among_grains()) return;
-    f.boundary.share.back() = f.share[slot];
-    f.boundary.eps.back() = f.eps[slot];
+    if (f.among_grains()) f.boundary.share.back() = f.share[slot]; // the next lists give it its porosity
 }
 
 /// Fluid behind an outlet becomes part of its buffer.

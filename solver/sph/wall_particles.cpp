@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -102,7 +103,17 @@ BoundaryParticle wall_particle(const SphFluid& f, const Vec3& x, const std::vect
     }
     for (const OpenSide& side : f.open_sides) // beside a buffer there is no fluid: that in front of the plane will do
         if (side.distance(mirror) < 0.0) mirror = side.reflected(mirror);
-    return {x, mirror, velocity, velocity, -1, continuation(behind, false), continuation(behind, true)};
+    const Behind& deepest = *std::max_element(behind.begin(), behind.end(),
+                                              [](const Behind& a, const Behind& b) { return a.depth < b.depth; });
+    return {x,
+            mirror,
+            velocity,
+            velocity,
+            -1,
+            continuation(behind, false),
+            continuation(behind, true),
+            deepest.normal,
+            deepest.wall->cos_contact};
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 #include "checkpoint_bed_scene.hpp"
 #include "checkpoint_scenes.hpp"
 #include "corrected_grid_scene.hpp"
+#include "drop_scene.hpp"
 #include "lumps_scene.hpp"
 #include "medium_scene.hpp"
 
@@ -129,7 +130,7 @@ TEST_P(Checkpoint, RunsAreTheSameForAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Checkpoint,
-                         testing::Values(dry, lumps, wet, flowing, passing, published, on_grid, medium_on_grid,
+                         testing::Values(dry, lumps, wet, flowing, passing, drop, published, on_grid, medium_on_grid,
                                          grains_on_grid, corrected_on_grid, bed));
 
 std::string complaint(const std::string& path) {

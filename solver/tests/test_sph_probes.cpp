@@ -44,6 +44,14 @@ TEST(SphScene, ProbesByHand) {
     EXPECT_NEAR(probed(wave + "\"cos\"", {}, 2, kick), 8.0 / 320.0 * std::cos(6.0 * pi * 0.275), 1e-15);
 }
 
+// The moment about the origin, or of copies: 20 and 16 particles 0.05 m apart, (n^2 - 1)/12 spacings squared.
+TEST(SphScene, SecondMoment) {
+    const std::string probe = "quantity = \"fluid_second_moment\"\naxis = ";
+    EXPECT_NEAR(probed(probe + "\"x\""), 399.0 / 12.0 * 0.0025, 1e-14);
+    EXPECT_NEAR(probed(probe + "\"y\""), 255.0 / 12.0 * 0.0025, 1e-14);
+    expect_refused(scene_text(2, {}, {}, "[[probe]]\nname = \"p\"\n" + probe + "\"z\""), {"axis", "z"});
+}
+
 // Particles weighed by number instead of room, or those outside the box.
 TEST(SphScene, MeanPressureOfABox) {
     const auto press = [](SphFluid& f) {
