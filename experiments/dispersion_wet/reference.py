@@ -214,3 +214,32 @@ def measure(quantity, run):
 
 def reference(quantity, scene, t):
     return {"carried": 1.0}.get(quantity, 0.0)
+
+
+def figures(runs):
+    """Heights and pressure over time, and the run as pictures."""
+    from matplotlib.figure import Figure
+    from plumb_reports import film
+
+    runs = [run for run in runs if run.failure is None]
+    if not runs:
+        return []
+    figure = Figure(figsize=(10.0, 4.0), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for run in runs:
+        t = times(run)
+        (line,) = left.plot(t, 1e3 * over_time(run, mean_height), label=f"{run.variant}: grains ({regime(run)})")
+        left.plot(t, 1e3 * over_time(run, cavity_height), color=line.get_color(), ls=":")
+        left.plot(t, 1e3 * over_time(run, bed_top), color=line.get_color(), ls="--")
+        right.plot(t, over_time(run, floor_pressure) / weight(run.scene), color=line.get_color())
+        expanded = expanded_height(run.scene)
+        if expanded is not None:
+            left.axhline(1e3 * expanded, color=line.get_color(), lw=0.5)
+    left.set(xlabel="time (s)", ylabel="height (mm)")
+    left.legend(fontsize=7)
+    right.set(xlabel="time (s)", ylabel="pressure under the bed over its weight")
+    shown = [("heights", figure, "Mean height of the grains, their top (dashed), the cavity (dotted), a uniform bed that the flow carries (thin); pressure under the bed.")]
+    for run in runs:
+        numbers = np.unique(np.linspace(0, len(run.snapshot_files()) - 1, 6).astype(int))
+        shown.append((f"sequence_{run.variant}", film.sequence(run, numbers), f"{run.variant}: grains that the middle plane cuts, and the water beside it."))
+    return shown

@@ -1,12 +1,11 @@
 """A result as a film or as pictures side by side: a slab of grains and fluid around the middle, seen along one axis."""
 
-import json
-import tomllib
 from pathlib import Path
 
-import h5py
 import numpy as np
 
+from .plan import Plan
+from .results import Run
 from .strict import CaseError
 
 AXES = "xyz"
@@ -14,34 +13,27 @@ GRAINS = "#8c5a2b"
 FAST = 0.995  # quantile of the speeds that ends the colour scale: a few splashes would darken the rest
 
 
-class Result:
-    """The folder of a run: scene and snapshots."""
-
-    def __init__(self, folder):
-        self.folder = Path(folder)
-        record = self.folder / "run.json"
-        if not record.is_file():
-            raise CaseError(f"{self.folder}: no run.json; expected the folder of a result")
-        self.scene = tomllib.loads(json.loads(record.read_text())["scene"])
-        self.files = sorted(f for f in (self.folder / "snapshots").glob("*.h5") if f.stem.isdigit())
-        if not self.files:
-            raise CaseError(f"{self.folder}: no snapshots (time.snapshots = true)")
-
-    def snapshot(self, k):
-        """Fields of snapshot k: {"fluid": {...}, "grains": {...}}, as far as there are any."""
-        with h5py.File(self.files[k]) as file:
-            return {g: {name: file[g][name][...] for name in file[g]} for g in ("fluid", "grains") if g in file}
-
-    def time(self, k):
-        """Of snapshot k, s."""
-        return int(self.files[k].stem) * self.scene["time"]["output_interval"]
+def result_in(folder):
+    """The run whose results are in a folder; raises CaseError where there are none to show."""
+    folder = Path(folder)
+    if not (folder / "run.json").is_file():
+        raise CaseError(f"{folder}: no run.json; expected the folder of a result")
+    run = Run(Plan(variant=folder.name, value=None, overrides={}, folder=folder), None, 0, None)
+    if not whole_snapshots(run):
+        raise CaseError(f"{folder}: no snapshots (time.snapshots = true)")
+    return run
 
 
-def greatest_speed(result):
+def whole_snapshots(run):
+    """Numbers of the snapshots, without that of a divergence."""
+    return [k for k, file in enumerate(run.snapshot_files()) if file.stem.isdigit()]
+
+
+def greatest_speed(run):
     """Where the colours of the fluid end, m/s."""
-    ends = []
-    for k in range(0, len(result.files), max(1, len(result.files) // 10)):
-        fluid = result.snapshot(k).get("fluid")
+    ends, numbers = [], whole_snapshots(run)
+    for k in numbers[:: max(1, len(numbers) // 10)]:
+        fluid = run.snapshot(k).get("fluid")
         if fluid is not None and len(fluid["v"]):
             ends.append(np.quantile(np.linalg.norm(fluid["v"], axis=1), FAST))
     return max(ends, default=0.0) or 1.0
@@ -73,17 +65,23 @@ def side_view(axes, snapshot, scene, fastest, along="y", share=0.5):
     axes.set(xlim=(0.0, 1e3 * size[across]), ylim=(0.0, 1e3 * size[up]), aspect="equal")
 
 
-def sequence(result, numbers, along="y"):
+def extents(run, along):
+    """Width and height of what is seen along an axis, m."""
+    size = run.scene["domain"]["size"]
+    return [size[c] for c in range(3) if c != AXES.index(along)]
+
+
+def sequence(run, numbers, along="y"):
     """Figure of snapshots side by side."""
     from matplotlib.figure import Figure
 
-    size = np.asarray(result.scene["domain"]["size"], float)
-    across, up = (size[c] for c in range(3) if c != AXES.index(along))
+    across, up = extents(run, along)
     figure = Figure(figsize=(2.2 * len(numbers), 2.2 * up / across + 0.5), layout="constrained")
-    fastest = greatest_speed(result)
+    fastest = greatest_speed(run)
     for axes, k in zip(np.atleast_1d(figure.subplots(1, len(numbers), sharey=True)), numbers, strict=True):
-        side_view(axes, result.snapshot(k), result.scene, fastest, along)
-        axes.set_title(f"{result.time(k):.2f} s", fontsize=8)
+        snapshot = run.snapshot(k)
+        side_view(axes, snapshot, run.scene, fastest, along)
+        axes.set_title(f"{snapshot['time']:.2f} s", fontsize=8)
         axes.tick_params(labelsize=6)
     return figure
 
@@ -93,16 +91,16 @@ def write_film(folder, path, along="y", frames_per_second=10.0):
     from matplotlib.animation import FuncAnimation, PillowWriter
     from matplotlib.figure import Figure
 
-    result = Result(folder)
-    size = np.asarray(result.scene["domain"]["size"], float)
-    across, up = (size[c] for c in range(3) if c != AXES.index(along))
+    run = result_in(folder)
+    across, up = extents(run, along)
     figure = Figure(figsize=(4.0, 4.0 * up / across + 0.4), dpi=100)
     axes = figure.add_axes((0.1, 0.08, 0.86, 0.86))
-    fastest = greatest_speed(result)
+    fastest = greatest_speed(run)
 
     def draw(k):
+        snapshot = run.snapshot(k)
         axes.clear()
-        side_view(axes, result.snapshot(k), result.scene, fastest, along)
-        axes.set_title(f"{result.time(k):.2f} s", fontsize=9)
+        side_view(axes, snapshot, run.scene, fastest, along)
+        axes.set_title(f"{snapshot['time']:.2f} s", fontsize=9)
 
-    FuncAnimation(figure, draw, frames=len(result.files)).save(path, writer=PillowWriter(fps=frames_per_second))
+    FuncAnimation(figure, draw, frames=whole_snapshots(run)).save(path, writer=PillowWriter(fps=frames_per_second))
