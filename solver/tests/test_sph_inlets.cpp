@@ -41,7 +41,9 @@ const std::string pipe = "profile = {law = \"parabolic\", mean_speed = 1.0, radi
 // A profile that is not scaled brings in 3.5 times the stated flow here, one scaled by its integral what 12 rows make
 // of it.
 TEST(SphInlets, BringInTheFlowRate) {
-    Bench bench(cell(pipe));
+    std::string scene = cell(pipe);
+    scene.replace(scene.find("even = true"), 11, ""); // an even outlet may hand back a layer of new particles
+    Bench bench(scene);
     const SphFluid& f = bench.fluid();
     const std::int32_t begun = f.next_id;
     advance(bench.simulation, 500); // 0.05 s, a hundred particles in
