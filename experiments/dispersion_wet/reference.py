@@ -134,9 +134,19 @@ def carried(run):
     return float(np.mean([floor_pressure(run, k) for k in late(run)])) / weight(run.scene)
 
 
+def water_in(run, k):
+    """Mass of water below the outlet, kg: a layer of the buffer's lattice that is half way out counts half."""
+    scene, snapshot = run.scene, run.snapshot(k)
+    _, _, height = cell_of(scene)
+    dx, walls = scene["fluid"]["spacing"], snapshot["walls"]
+    outlet = walls["x"][walls["side"] == 1, 2] - height
+    layer = np.sum(outlet < np.min(outlet) + 0.5 * dx) * scene["fluid"]["density"] * dx**3
+    return float(np.sum(snapshot["fluid"]["mass"])) + layer * (0.5 - np.min(outlet) / dx)
+
+
 def water_missed(run):
     """Greatest change of the mass of water in the cell since the jet began, relative."""
-    mass = np.array([np.sum(run.snapshot(k)["fluid"]["mass"]) for k in range(settled(run), len(run.snapshot_files()))])
+    mass = np.array([water_in(run, k) for k in range(settled(run), len(run.snapshot_files()))])
     return float(np.max(np.abs(mass / mass[0] - 1.0)))
 
 
