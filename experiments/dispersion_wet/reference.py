@@ -145,8 +145,8 @@ def water_in(run, k):
 
 
 def water_missed(run):
-    """Greatest change of the mass of water in the cell since the jet began, relative."""
-    mass = np.array([water_in(run, k) for k in range(settled(run), len(run.snapshot_files()))])
+    """Greatest change of the mass of water in the cell, relative."""
+    mass = over_time(run, water_in)
     return float(np.max(np.abs(mass / mass[0] - 1.0)))
 
 
@@ -154,7 +154,7 @@ def beyond_walls(run):
     """How deep the grains' surfaces are behind walls at most, in diameters."""
     scene, d = run.scene, run.scene["grains"]["diameter"]
     axis, radius, height = cell_of(scene)
-    worst = 0.0
+    worst = -math.inf
     for k in range(len(run.snapshot_files())):
         x = run.snapshot(k)["grains"]["x"]
         worst = max(worst, np.max(np.hypot(*(x[:, :2] - axis).T)) - radius, -np.min(x[:, 2]), np.max(x[:, 2]) - height)
@@ -201,6 +201,8 @@ def piercing(run):
 
 def regime(run):
     """`packed`: the bed lies; `breakthrough`: the jet goes through it most of the time; `impregnation`: it is lifted and the jet stays within."""
+    if len(late(run)) == 0:
+        return "no jet yet"
     if late_mean(run, mean_height) < 1.02 * mean_height(run, settled(run)):
         return "packed"
     return "breakthrough" if piercing(run) > 0.5 else "impregnation"
