@@ -222,8 +222,7 @@ std::vector<FluidWall> read_fluid_walls(std::vector<Table>& tables, const Domain
             wall.fluid_is_inside = tables[k].choice("fluid_side", {"inside", "outside"}) == "inside";
         }
         if (tables[k].has("contact_angle"))
-            wall.cos_contact =
-                std::cos(tables[k].number("contact_angle", {0.0, 180.0, true, true}) * (std::numbers::pi / 180.0));
+            wall.cos_contact = std::cos(tables[k].number("contact_angle", {0.0, std::numbers::pi, true, true}));
         walls.push_back(std::move(wall));
     }
     return walls;

@@ -32,7 +32,7 @@ shape = "plane"
 point = [0.0, 0.0]
 normal = [0.0, 1.0]
 slip = "no_slip"
-contact_angle = 70.0
+contact_angle = 1.22
 [time]
 end = 0.2
 output_interval = 0.02

@@ -237,8 +237,8 @@ TEST(SphSurface, Scenes) {
                               "slip = \"free_slip\"\n";
     const std::string tense = drop_text(disc("1.0", "1.0")), slack = drop_text(disc("1.0", "1.0"), {{"surface", ""}});
     expect_refused(tense + floor, {"fluid.surface", "a wall without contact_angle"});
-    expect_refused(slack + floor + "contact_angle = 90.0\n", {"fluid.surface", "a wall has a contact_angle"});
-    expect_refused(tense + floor + "contact_angle = 180.0\n", {"contact_angle", "180"});
+    expect_refused(slack + floor + "contact_angle = 1.57\n", {"fluid.surface", "a wall has a contact_angle"});
+    expect_refused(tense + floor + "contact_angle = 90.0\n", {"contact_angle", "90"});
 }
 
 // An ellipse that is a circle, or one about another middle.

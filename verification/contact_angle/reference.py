@@ -19,9 +19,14 @@ def angle_of(height, area):
     return math.degrees(brentq(lambda angle: middle_height(angle, area) - height, 0.05, 3.1))
 
 
+def asked_angle(scene):
+    """The wall's contact angle, degrees."""
+    return math.degrees(scene["wall"][0]["contact_angle"])
+
+
 def reference(quantity, scene, t):
     if quantity == "angle":
-        return scene["wall"][0]["contact_angle"]
+        return asked_angle(scene)
     raise KeyError(quantity)
 
 
@@ -34,12 +39,12 @@ def measure(quantity, run):
     if quantity == "angle":
         return found_angle(run)
     if quantity == "wrong_way":  # how far from a right angle, towards the one asked for
-        return (found_angle(run) - 90.0) * math.copysign(1.0, run.scene["wall"][0]["contact_angle"] - 90.0)
+        return (found_angle(run) - 90.0) * math.copysign(1.0, asked_angle(run.scene) - 90.0)
     return NotImplemented
 
 
 def table(runs):
-    rows = [[f"{run.scene['wall'][0]['contact_angle']:.0f}", f"{1.0 / run.scene['fluid']['spacing']:.0f}", f"{found_angle(run):.1f}"]
+    rows = [[f"{asked_angle(run.scene):.0f}", f"{1.0 / run.scene['fluid']['spacing']:.0f}", f"{found_angle(run):.1f}"]
             for run in runs if not run.failure]
     return {"columns": ["angle asked for", "spacings to the half disc's radius", "angle found"], "rows": rows,
             "caption": "Degrees, from the height of the centre of mass."}
@@ -58,7 +63,7 @@ def figures(runs):
         run = min((r for r in good if r.variant == name), key=lambda r: r.scene["fluid"]["spacing"])
         x = run.snapshot(len(run.snapshot_files()) - 1)["fluid"]["x"]
         middle, area = x[:, 0].mean(), len(x) * run.scene["fluid"]["spacing"] ** 2
-        angle = math.radians(run.scene["wall"][0]["contact_angle"])
+        angle = run.scene["wall"][0]["contact_angle"]
         radius = math.sqrt(area / (angle - math.sin(angle) * math.cos(angle)))
         arc = np.linspace(-angle, angle, 200)
         axes.plot(x[:, 0] - middle, x[:, 1], ".", ms=3)
