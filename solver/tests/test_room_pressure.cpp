@@ -138,3 +138,33 @@ TEST(RoomPressure, KnowsNoBackground) {
                         (entry(with.fluid(), with.fluid().a, k) - entry(without.fluid(), without.fluid().a, k)).norm());
     EXPECT_GT(felt, 0.0);
 }
+
+// A reaction that is taken off the water twice: held grains in water that a wave of pressure has just begun to move
+// feel half of its acceleration times the step, not less by phi/eps, here 0.6.
+TEST(RoomPressure, IsNoLossOfTheFluid) {
+    Keys keys = shared;
+    keys["grains.motion"] = "\"fixed\"";
+    keys["grains.diameter"] = "1.2e-4";
+    keys["grains.arrange"] = "{law = \"lattice\", kind = \"cubic\", lower = [0.0, 0.0, 0.0], "
+                             "upper = [1.6e-3, 1.6e-3, 1.6e-3], spacing = 1.3333333333333333e-4}";
+    keys["coupling.mean_pressure_gradient"] = "";
+    keys["time.step"] = "1e-5";
+    CoupledBench bench(keys);
+    SphFluid& f = bench.fluid();
+    const double wave = 2.0 * std::numbers::pi / 1.6e-3;
+    for (std::size_t k = 0; k < f.slots(); ++k) f.rho[k] *= 1.0 + 1e-4 * std::sin(wave * f.x[0][k]);
+    advance(bench.simulation, 1);
+    const FluidOnGrains& on = *bench.simulation.fluid;
+    const double d = 1.2e-4;
+    int steep = 0;
+    for (std::size_t k = 0; k < bench.grains().size(); ++k) {
+        const auto id = static_cast<std::size_t>(bench.grains().id[k]);
+        if (std::abs(std::cos(wave * bench.grains().x[k][0])) < 0.5) continue;
+        ++steep;
+        const double slip = 0.5 * 1e-5 * on.at_grains.stress[id][0] / f.density;
+        const double expected =
+            drag_resistance(on.drag, f.density, f.viscosity, d, on.at_grains.eps[id], std::abs(slip)) * slip;
+        EXPECT_NEAR(on.last_drag[id][0], expected, 0.1 * std::abs(expected));
+    }
+    EXPECT_GT(steep, 500);
+}
