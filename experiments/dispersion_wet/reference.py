@@ -11,6 +11,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
 from drag_laws.drag_laws import LAWS  # noqa: E402
+from theory.bed_on_floor import part_below  # noqa: E402
 
 G = 9.81
 OPEN = 0.75  # porosity above which the axis counts as cavity: half way from a settled bed to clear water
@@ -93,12 +94,6 @@ def late(run):
 def settled(run):
     """Number of the last snapshot before the jet."""
     return int(np.nonzero(times(run) <= run.scene["inlet"][0]["opens"]["from"])[0][-1])
-
-
-def part_below(z, d, level):
-    """Of the volume of spheres at z."""
-    s = np.clip((level - z) / d + 0.5, 0.0, 1.0)
-    return s * s * (3.0 - 2.0 * s)
 
 
 def porosity(run):

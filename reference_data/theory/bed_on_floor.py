@@ -22,6 +22,12 @@ import numpy as np
 from .plane_kernel import plane_average
 
 
+def part_below(z, d, level):
+    """Share of the volumes of spheres of diameter d (m) at the heights z (m) that is below a level (m)."""
+    s = np.clip((level - z) / d + 0.5, 0.0, 1.0)
+    return s * s * (3.0 - 2.0 * s)
+
+
 class LayeredBed:
     """Layers at `z` (m), of `per_area` grains per m2 each, of diameter d (m), kernel h (m); the floor is at 0."""
 

@@ -55,16 +55,9 @@ struct OwnLanes {
     Components<Pack, 3> g;
 };
 OwnLanes lanes_of(const SphFluid& f, const OwnFields& own, std::size_t cluster) {
-    OwnLanes lanes;
-    for (std::size_t lane = 0; lane < pack_width; ++lane) {
-        const auto r = static_cast<std::size_t>(f.clusters.record_of[pack_width * cluster + lane]);
-        const OwnRecord& o = own.records[r];
-        const int l = static_cast<int>(lane);
-        lanes.x.x[l] = o.x, lanes.x.y[l] = o.y, lanes.x.z[l] = o.z;
-        lanes.rho_f[l] = o.rho_f, lanes.eps[l] = own.eps[r];
-        lanes.g.x[l] = o.gx, lanes.g.y[l] = o.gy, lanes.g.z[l] = o.gz;
-    }
-    return lanes;
+    Pack lanes[8];
+    load_cluster(f.clusters, own.records, cluster, lanes);
+    return {{lanes[0], lanes[1], lanes[2]}, lanes[4], load(f.eps, cluster), {lanes[5], lanes[6], lanes[7]}};
 }
 
 /// Calls body(b, its number, x_a - x_b, V_b f(q)) for the records near a cluster; grad W = sigma/h^5 f (x_a - x_b).
@@ -111,13 +104,7 @@ template <class Law> void find_gradients(SphFluid& f, OwnFields& own) {
         const Components<Pack, 3> s{load(f.spread[0], cluster), load(f.spread[1], cluster), load(f.spread[2], cluster)};
         store(f.drho_spread, cluster, (dot(s, g.rho_f) * a.eps + a.rho_f * dot(s, g.eps)) / load(f.share, cluster));
     });
-    parallel_for(own.records.size(), [&](std::size_t r) { // an image is its source but for its place
-        const auto source = static_cast<std::size_t>(f.clusters.image_of[r]);
-        if (source == r) return;
-        own.records[r].gx = own.records[source].gx;
-        own.records[r].gy = own.records[source].gy;
-        own.records[r].gz = own.records[source].gz;
-    });
+    update_images(f.clusters, own.records, f.domain);
 }
 
 template <class Law> void diffuse(SphFluid& f, const OwnFields& own) {

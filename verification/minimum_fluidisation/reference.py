@@ -11,7 +11,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
 from drag_laws.drag_laws import LAWS  # noqa: E402
-from theory.bed_on_floor import LayeredBed  # noqa: E402
+from theory.bed_on_floor import LayeredBed, part_below  # noqa: E402
 
 G = 9.81
 UNITS = {"onset": "1", "carried": "1", "packed_drop": "1", "porosity": "1", "flux_missed": "1"}
@@ -58,20 +58,6 @@ def onset_by_law(scene, eps):
     return bisected(lambda u: gradient(scene, eps, u) - wanted)
 
 
-def porosity_of(scene, grains_x):
-    """Of the bed's inside, two diameters off its floor and top: grains cut by planes count by their volume."""
-    d = scene["grains"]["diameter"]
-    z = np.sort(grains_x[:, 2])
-    low, high = 2.0 * d, z[-len(z) // 20] - 1.5 * d
-
-    def part_below(level):  # of a sphere's volume
-        s = np.clip((level - z) / d + 0.5, 0.0, 1.0)
-        return s * s * (3.0 - 2.0 * s)
-
-    volume = np.sum(part_below(high) - part_below(low)) * math.pi / 6.0 * d**3
-    return 1.0 - volume / (area(scene) * (high - low))
-
-
 def drops(run):
     """Times and the mean pressure of the lowest slice of the bed less that above the bed, Pa."""
     t, low = run.series("p_low")
@@ -83,16 +69,18 @@ def slice_height(scene):
     return next(p for p in scene["probe"] if p["name"] == "p_low")["upper"][2]
 
 
-def settled_porosity(run):
-    """When the inlet opens."""
-    k = round(run.scene["inlet"][0]["opens"]["from"] / run.scene["time"]["output_interval"])
-    return porosity_of(run.scene, run.snapshot(k)["grains"]["x"])
-
-
 def settled(run):
     """Heights of the grains when the inlet opens, m, ascending."""
     k = round(run.scene["inlet"][0]["opens"]["from"] / run.scene["time"]["output_interval"])
     return np.sort(run.snapshot(k)["grains"]["x"][:, 2])
+
+
+def settled_porosity(run):
+    """Of the settled bed's inside, two diameters off its floor and top: grains cut by planes count by their volume."""
+    d, z = run.scene["grains"]["diameter"], settled(run)
+    low, high = 2.0 * d, z[-len(z) // 20] - 1.5 * d
+    volume = np.sum(part_below(z, d, high) - part_below(z, d, low)) * math.pi / 6.0 * d**3
+    return 1.0 - volume / (area(run.scene) * (high - low))
 
 
 def smoothed_bed(run):
