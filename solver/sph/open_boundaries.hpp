@@ -3,9 +3,9 @@
 // Behind the plane is a buffer of boundary particles as deep as the kernel reaches. They move with their velocity; one
 // that crosses an inlet becomes fluid and is replaced at the far end of the buffer, fluid that crosses an outlet
 // becomes part of its buffer. An outlet lets out what comes; where a flow recirculates, even ones have to, or the fluid
-// that would come back is lost (even_outlets.hpp). Sound
-// leaves: the state in the buffer is a slow mean plus the part of the deviation from it that the outgoing
-// characteristic carries (after Lastiwka, Basa & Quinlan 2009, Int. J. Numer. Meth. Fluids 61, 709).
+// that would come back is lost (even_outlets.hpp). Sound leaves: the state in the buffer is a slow mean plus the part
+// of the deviation from it that the outgoing characteristic carries (after Lastiwka, Basa & Quinlan 2009, Int. J.
+// Numer. Meth. Fluids 61, 709).
 #pragma once
 
 #include "core/inlet_profiles.hpp"
