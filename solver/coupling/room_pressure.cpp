@@ -8,9 +8,9 @@ namespace plumb {
 
 namespace {
 
-/// p V of a particle [J], from its record.
+/// (p - kappa) V of a particle [J], from its record.
 double pressure_volume(const SphFluid& f, const FluidRecord& b, std::size_t slot) {
-    return (b.p_over_rho_sq * f.mass * f.mass / b.volume - f.background_pressure * b.volume) / f.eps[slot];
+    return (own_pressure(f, pressure_of(f, b), f.eps[slot]) - f.wetting_pressure) * b.volume;
 }
 
 /// sum_a p_a V_a W and sum_a p_a V_a grad W over the particles that `near` names, about eight places.

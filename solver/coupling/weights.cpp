@@ -162,6 +162,34 @@ void list_mirrored_grains(Weights& w, const SphFluid& f, double reach) {
     list_records(w.fluid_near_mirrors, f.clusters.grid, places, 3, reach, f.clusters.passive);
 }
 
+/// Share of the room around the grains, as the gathering kernel weighs it, that fluid fills: sum_a V_a W over what
+/// walls and open sides leave, 1 - sum_b V_b W over their particles; at most 1. The sums of weights are there.
+void find_wet_share(const Weights& w, const SphFluid& f, GatheredFluid& at) {
+    at.wet.assign(at.u.size(), 0.0);
+    const double h = w.h.gather;
+    with_kernel(w.kernel, [&](const auto& law) {
+        using Law = std::decay_t<decltype(law)>;
+        const Pack over_h = broadcast<Pack>(1.0 / h), sigma = broadcast<Pack>(Law::sigma(3) / (h * h * h));
+        for_each_group(w.grains.count, [&](std::size_t group) {
+            Pack lanes[8];
+            load_cluster(w.grains, w.records, group, lanes);
+            Pack behind = broadcast<Pack>(0.0);
+            for (const std::int32_t record : w.all_near.near(group)) {
+                const auto r = static_cast<std::size_t>(record);
+                if (w.slot_of_record[r] >= 0) continue; // fluid
+                const FluidRecord& b = f.clusters.records[r];
+                const Apart from = apart(lanes[0], lanes[1], lanes[2], b);
+                behind += sigma * Law::w(from.r * over_h) * broadcast<Pack>(b.volume);
+            }
+            const Pack fluid = sigma * load(w.gather_sum, group); // which are kept without the kernel's constant
+            for_each_grain_of(w, group, [&](std::size_t id, int lane) {
+                // a wall's particles may overlap at its corners; a grain in one still has an eighth of the room
+                at.wet[id] = std::min(1.0, fluid[lane] / std::max(1.0 - behind[lane], 0.125));
+            });
+        });
+    });
+}
+
 } // namespace
 
 bool outdated(const Weights& w, const Domain& domain, const GrainPlaces& grains) {
@@ -209,6 +237,8 @@ void renew_weights(Weights& w, const SphFluid& f, const GrainPlaces& grains) {
     w.porosity_near.parts.clear();
     w.fluid_far.parts.clear();
     list_open_sides(w, f, porosity);
+    if (f.shares_pressure && f.free_surface)
+        list_records(w.all_near, f.clusters.grid, lane_places(w.grains, 3), 3, exchange, {});
     if (f.shares_pressure) {
         if (porosity > exchange)
             list_records(w.fluid_far, f.clusters.grid, lane_places(w.grains, 3), 3, porosity, f.clusters.passive);
@@ -266,12 +296,14 @@ std::int64_t gather(Weights& w, const SphFluid& f, const std::vector<double>& ma
             at.gradient.resize(n);
             gather_gradient<Law>(w, f, at);
         }
+        if (f.shares_pressure && f.free_surface) find_wet_share(w, f, at);
         if (!with_load) return;
         write_records(w, f.domain, [&](CouplingRecord& record, std::size_t id, double over_sum) {
-            record.mass = over_sum * mass[id];
+            record.mass = over_sum * mass[id] * (at.wet.empty() ? 1.0 : at.wet[id]);
         });
         spread_load<Law>(w, f);
         gather_load<Law>(w, f, at);
+        for (std::size_t id = 0; id < at.wet.size(); ++id) at.load[id] /= std::max(at.wet[id], 1e-12);
     });
     if (!w.own_volume) take_out_own_volume(w, f, at.eps);
     return bound_porosity(at.eps);

@@ -53,12 +53,13 @@ struct Weights {
     NeighbourLists porosity_near;             // likewise with mirrored grains, if there are any or it reaches further
     NeighbourLists fluid_near_mirrors;        // records of the fluid near groups of mirrored grains
     NeighbourLists fluid_far;                 // and near groups of grains, if the porosity reaches further
+    NeighbourLists all_near;                  // records of fluid and boundary near groups of grains, where some are wet
     NeighbourLists open_near;                 // of grains, mirrored ones too, near the planes of open sides
     std::vector<std::int32_t> open_member;    // [lanes of open_near] particle of a buffer; the last group is filled up
     std::vector<std::int32_t> slot_of_record; // of the fluid's particle behind a record
-    Field<double> sum, gather_sum;            // S_j of the spreading and of the gathering kernel, by slot
-    Field<double> load;                       // mass of grains over mass of fluid, by slot of the fluid
-    RadialTables tables;                      // of the porosity's law, but for `kernel`
+    Field<double> sum, gather_sum; // S_j of the spreading and of the gathering kernel, by slot, over sigma/h^3
+    Field<double> load;            // mass of grains over mass of fluid, by slot of the fluid
+    RadialTables tables;           // of the porosity's law, but for `kernel`
     std::vector<std::int32_t> table_of_grain; // by id
     std::vector<std::int32_t> table_of;       // [records]; empty without tables
 
@@ -74,7 +75,9 @@ struct GatheredFluid {
     std::vector<Vec3> along;  // Du/Dt over the step [m/s2]; empty where it is not known but by the stress
     std::vector<double> eps;  // fluid fraction
     std::vector<char> dry;    // 1 where no particle is in reach
-    std::vector<double> load; // mass of grains over mass of fluid, where the grain's force goes; 0 one way
+    std::vector<double> wet;  // share of the room around a grain that fluid fills, at most 1; empty: it is all around
+    std::vector<double> load; // mass of grains over mass of fluid, where the grain's force goes; 0 one way. Grains
+                              // count as far as they are wet, and so does this one
 
     bool wants_gradient = false;           // set where a force needs it
     std::vector<Eigen::Matrix3d> gradient; // (i, j) = d u_i/d x_j of the velocity at the middle of the step [1/s]

@@ -3,6 +3,7 @@
 #include "core/initial_fields.hpp"
 #include "coupling/self_disturbance.hpp"
 #include "coupling/suspension_viscosity.hpp"
+#include "coupling/wetting_laws.hpp"
 #include "dem/arrange.hpp"
 #include "run/probes.hpp"
 #include "sph/arrange_fluid.hpp"
@@ -41,6 +42,7 @@ std::vector<LawFamily> law_families() {
                                     {"coupling.porosity", law_entries<PrescribedPorosity>()},
                                     {"coupling.porosity (sph)", law_entries<PorosityLaw>()},
                                     {"coupling.suspension_viscosity", law_entries<SuspensionViscosity>()},
+                                    {"coupling.wetting", law_entries<WettingLaw>()},
                                     {"coupling.self_disturbance", law_entries<SelfDisturbanceLaw>()},
                                     {"coupling.self_disturbance.structure", law_entries<StructureFactor>()},
                                     {"probe.quantity", law_entries<ProbeQuantity>()}};

@@ -105,7 +105,7 @@ void write_fluid(Hdf5Writer& file, const SphFluid& f) {
     file.write("fluid/rho", rho);
     file.write("fluid/p", p);
     file.write("fluid/id", id);
-    if (!eps.empty()) {
+    if (f.among_grains()) {
         file.write("fluid/eps", eps);
         file.attribute("fluid/eps", "units", std::string("1"));
         file.write("fluid/mass", mass);
@@ -164,7 +164,7 @@ void write_boundary(Hdf5Writer& file, const SphFluid& f) {
             x[3 * k + c] = f.boundary.x[c][k];
             v[3 * k + c] = velocity[c];
         }
-        p[k] = r.p_over_rho_sq * (f.mass / r.volume) * (f.mass / r.volume) - f.background_pressure;
+        p[k] = own_pressure(f, pressure_of(f, r), f.boundary.eps[k]);
     }
     file.write("walls/x", std::span<const double>(x), {n, 3});
     file.write("walls/v", std::span<const double>(v), {n, 3});

@@ -97,6 +97,7 @@ void choose_mirrors(Coupling& c, const SphFluid& fluid, const GrainSystem& syste
 }
 
 void couple(Coupling& c, SphFluid& fluid, const GrainSystem& grains, bool displaced) {
+    fluid.has_grains = true;
     fluid.share.assign(fluid.slots(), 1.0);
     fluid.clusters.images = reach(c.weights);
     renew_lists(fluid);

@@ -46,6 +46,18 @@ struct Prediction {
     double last, before;
 };
 
+/// The fluid fraction by record, images too.
+void tell_records_eps(SphFluid& f) {
+    f.eps_of_record.resize(f.clusters.records.size());
+    parallel_for(f.slots(), [&](std::size_t k) {
+        if (f.id[k] >= 0) f.eps_of_record[static_cast<std::size_t>(f.clusters.record_of[k])] = f.eps[k];
+    });
+    parallel_for(f.clusters.records.size(), [&](std::size_t r) {
+        const auto origin = static_cast<std::size_t>(f.clusters.image_of[r]);
+        if (origin != r) f.eps_of_record[r] = f.eps_of_record[origin];
+    });
+}
+
 /// Records of the state half a step ahead of v and rho, `since` after the last ones; x is there already.
 void fill_records(SphFluid& f, double half, double since) {
     const Prediction rate{half * (1.0 + f.memory), -half * f.memory};
@@ -65,9 +77,8 @@ void fill_records(SphFluid& f, double half, double since) {
                         f.v[c][k] + rate.last * f.a[c][k] + (remembers ? rate.before * f.a_before[c][k] : 0.0);
                 });
                 const double own = grains ? rho * f.share[k] / f.eps[k] : rho;
-                const double part = f.shares_pressure ? f.eps[k] : 1.0;
-                record.p_over_rho_sq =
-                    (part * law.pressure(own, f.density, f.sound_speed) + f.background_pressure) / (rho * rho);
+                const double p = law.pressure(own, f.density, f.sound_speed);
+                record.pressure = pressure_entry(f, pushing_pressure(f, p, grains ? f.eps[k] : 1.0), rho);
                 record.volume = f.mass / rho;
                 f.clusters.records[static_cast<std::size_t>(f.clusters.record_of[k])] = record;
             });
@@ -75,6 +86,7 @@ void fill_records(SphFluid& f, double half, double since) {
         f.equation_of_state);
     update_images(f.clusters, f.domain);
     if (f.boundary.size() == 0) return;
+    if (f.shares_pressure) tell_records_eps(f);
     continue_state(f, since);
     update_images(f.clusters, f.domain);
 }

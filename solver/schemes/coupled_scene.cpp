@@ -1,5 +1,6 @@
 #include "schemes/coupled_scene.hpp"
 
+#include "coupling/wetting_laws.hpp"
 #include "schemes/sph_scene.hpp"
 
 #include <fmt/format.h>
@@ -99,6 +100,20 @@ void read_pressure_force(Table& coupling, const Coupling& c, const GrainSystem& 
         coupling.fail(key, "\"shared\" needs \"pressure_gradient\" among the forces: the fluid has only its own part");
 }
 
+/// Capillarity of the bed's surface; without the key there is none.
+void read_wetting(Table& coupling, const GrainSystem& grains, SphFluid& fluid) {
+    const char* const key = "wetting";
+    if (!coupling.has(key)) return;
+    const auto law = make_family<WettingLaw>(coupling.law(key));
+    if (std::holds_alternative<NoWetting>(law)) return;
+    if (!fluid.shares_pressure) coupling.fail(key, "goes with pressure_force = \"shared\", whose energy it adds to");
+    if (!fluid.free_surface) coupling.fail(key, "without fluid.free_surface = true there is none that could move");
+    const std::vector<double>& r = grains.grains.radius;
+    if (std::any_of(r.begin(), r.end(), [&](double one) { return one != r.front(); }))
+        coupling.fail(key, "is that of grains of one diameter");
+    fluid.wetting_pressure = std::visit([&](const auto& one) { return one(2.0 * r.front()); }, law);
+}
+
 /// The closure for the fluid's viscosity among the grains, or `none`.
 void read_suspension_viscosity(Table& coupling, Coupling& c, const SphFluid& fluid) {
     const char* const key = "suspension_viscosity";
@@ -144,10 +159,11 @@ double largest_diameter(const GrainSystem& system) {
 
 Coupling read_coupling(Table& coupling, SphFluid& fluid, const GrainSystem& grains) {
     if (std::holds_alternative<CorrectedOperators>(fluid.operators))
-        coupling.fail("direction", "grains need fluid.operators = \"plain\" or \"variable_h\"");
+        coupling.fail("direction", "grains do not go with fluid.operators = \"corrected\"");
     if (std::holds_alternative<VariableOperators>(fluid.operators) &&
         (fluid.extras.diffusion > 0.0 || fluid.shifting > 0.0))
-        coupling.fail("direction", "among grains fluid.density_diffusion and shifting go with operators = \"plain\"");
+        coupling.fail("direction",
+                      "among grains fluid.density_diffusion and shifting do not go with operators = \"variable_h\"");
     if (!grains.injectors.empty()) coupling.fail("direction", "injected grains know no smoothed particles yet");
     Coupling c;
     c.two_way = coupling.choice("direction", {"two_way", "one_way"}) == "two_way";
@@ -178,6 +194,7 @@ Coupling read_coupling(Table& coupling, SphFluid& fluid, const GrainSystem& grai
     check_mirrors(coupling, c, grains);
     read_self_disturbance(coupling, c, fluid, grains);
     read_pressure_force(coupling, c, grains, fluid);
+    read_wetting(coupling, grains, fluid);
     read_suspension_viscosity(coupling, c, fluid);
     check_periodic_sides(fluid.domain, reach(c.weights) + fluid.clusters.skin, coupling.file());
     return c;

@@ -102,6 +102,11 @@ bool is_dry(const FluidOnGrains& f, std::int32_t id) {
     return f.gathers && f.at_grains.dry[static_cast<std::size_t>(id)] != 0;
 }
 
+/// Share of a grain that is wet.
+double wet_share(const FluidOnGrains& f, std::int32_t id) {
+    return f.at_grains.wet.empty() ? 1.0 : f.at_grains.wet[static_cast<std::size_t>(id)];
+}
+
 /// Nothing acts on a grain without fluid.
 OneForcing no_forcing(const Vec3& velocity) {
     OneForcing one;
@@ -132,8 +137,9 @@ OneForcing forcing_of_grain(FluidOnGrains& f, const GrainSystem& system, const B
     OneForcing one;
     one.eps = local.eps;
     const Vec3 history = history_of_grain(f, system, kernel, k, local, dt);
+    const double wet = wet_share(f, g.id[k]);
     const auto rate = [&](double slip) {
-        return both * mobility * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, both * slip);
+        return wet * both * mobility * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, both * slip);
     };
     // Lift depends on the velocity: a first pass at the start of the step finds the velocity at its middle.
     const int passes = std::any_of(f.forces.begin(), f.forces.end(), needs_gradient) ? 2 : 1;
@@ -212,11 +218,11 @@ Vec3 mean_slip(const FluidOnGrains& f, const LocalFluid& local, const Grains& g,
     Vec3 slip = local.u - g.v[k];
     if (!f.gathers) return slip;
     const auto id = static_cast<std::size_t>(g.id[k]);
-    const double d = 2.0 * g.radius[k], load = load_of(f, g.id[k]);
+    const double d = 2.0 * g.radius[k], load = load_of(f, g.id[k]), wet = wet_share(f, g.id[k]);
     const Vec3 start = f.at_grains.u[id] - g.v[k], a = f.at_grains.a[id] - (load / g.mass[k]) * other;
     for (int pass = 0; pass < 4; ++pass) { // the rate is that of the mean slip
         const double rate =
-            load / g.mass[k] * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip.norm());
+            wet * load / g.mass[k] * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip.norm());
         const StepWeights w = std::visit([&](const auto& exchange) { return exchange(rate * dt); }, f.exchange);
         slip = w.phi1 * start + (dt * w.phi2) * a;
     }
@@ -240,7 +246,8 @@ OneForcing write_fixed(FluidOnGrains& f, const GrainSystem& system, const Basset
     const Vec3 other = other_forces(f, local, {d, g.v[k]}, system.domain.gravity);
     const Vec3 not_lost = force_from_outside(f, d, system.domain.gravity) + shared_force(f, g.id[k], d);
     const Vec3 slip = mean_slip(f, local, g, k, other - not_lost, dt);
-    f.last_drag[id] = drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip.norm()) * slip;
+    const double wet = wet_share(f, g.id[k]);
+    f.last_drag[id] = wet * drag_resistance(f.drag, f.density, f.viscosity, d, local.eps, slip.norm()) * slip;
     f.last_fluid_force[id] = f.last_drag[id] + other + history_of_grain(f, system, kernel, k, local, dt);
     OneForcing one;
     one.re = f.density * d * local.eps * slip.norm() / f.viscosity;

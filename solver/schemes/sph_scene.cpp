@@ -186,7 +186,9 @@ void set_initial_state(Table& table, SphFluid& f) {
     const auto seed = static_cast<std::uint64_t>(jittered ? arrange.integer("seed", 0) : 0);
     check_spacing(table, f);
     fill_box(f, jitter, seed, filled_part(table, f));
-    if (f.slots() == 0)
+    const bool fed = f.free_surface && std::any_of(f.open_sides.begin(), f.open_sides.end(),
+                                                   [](const OpenSide& side) { return side.is_inlet(); });
+    if (f.slots() == 0 && !fed) // an empty vessel is filled by its inlet
         table.fail("arrange", "there is no place for the fluid: every place of the lattice is behind a wall, beyond an "
                               "open side or not in `fill`");
     line_walls(f);
@@ -251,6 +253,7 @@ std::vector<OpenSide> read_open_sides(std::vector<Table>& inlets, std::vector<Ta
     for (Table& table : inlets) {
         sides.push_back(read_open_side(table, domain));
         sides.back().profile = make_family<InletProfile>(table.law("profile"));
+        if (table.has("rigid")) sides.back().rigid = table.flag("rigid");
         if (table.has("flow_rate")) sides.back().flow_rate = table.number("flow_rate", positive);
         if (!table.has("opens")) continue;
         Table opens = table.table("opens");
@@ -281,7 +284,6 @@ SphFluid read_sph_fluid(Table& table, const Domain& domain, const std::vector<Fl
     if (f.free_surface && !f.extras.stratified && f.domain.gravity.norm() > 0.0)
         table.fail("pressure", "\"dynamic\" leaves no gravity to hold a free surface");
     if (table.has("filling_time")) f.filling_time = table.number("filling_time", positive);
-    if (f.filling_time > 0.0 && f.free_surface) table.fail("filling_time", "a free surface is not full");
     f.background_pressure = table.number_or("background_pressure", 0.0, non_negative);
     if (f.background_pressure > 0.0 && f.free_surface)
         table.fail("background_pressure", "blows up a fluid with a free surface");

@@ -45,7 +45,15 @@ struct EllipsoidFill {
     bool operator()(const Vec3& x) const { return ((x - centre).array() / semi_axes.array()).square().sum() <= 1.0; }
 };
 
-using Fill = std::variant<BoxFill, WaveFill, EllipsoidFill>;
+/// Nothing: the vessel is empty until its inlet opens.
+struct NoFill {
+    static constexpr std::string_view name = "nothing";
+    static constexpr LawInfo info{"nowhere", "with an inlet and a free surface", "definition"};
+    NoFill() = default;
+    bool operator()(const Vec3& /*x*/) const { return false; }
+};
+
+using Fill = std::variant<BoxFill, WaveFill, EllipsoidFill, NoFill>;
 
 /// Fills the part of the box where `is_fluid` says so with a square (cubic) lattice of the fluid's spacing, particles
 /// in the middle of their cells, each moved by up to `jitter` spacings along every axis (not out of the fluid). At

@@ -15,7 +15,8 @@ namespace plumb {
 
 namespace {
 
-constexpr double least_cover = 0.05; // of the fluid around a mirror point, below which it counts as dry
+constexpr double least_cover = 0.05;     // of the fluid around a mirror point, below which it counts as dry
+constexpr double enough_for_slope = 0.5; // of it, above which the slope of the pressure is continued into an inlet
 
 /// Calls visit(field) for every field of vectors.
 template <class Visit> void for_each_vector_field(BoundaryParticles& b, Visit&& visit) {
@@ -41,11 +42,10 @@ std::vector<std::int32_t> sorted_mirrors(const SphFluid& f, const VectorField& m
 Vec3 lane_of(const std::array<Pack, 3>& packs, int lane) { return {packs[0][lane], packs[1][lane], packs[2][lane]}; }
 
 /// `packing`: eps over share, what the density of the fluid itself is over that of the pure fluid in as much room.
-/// `part` of the pressure is the fluid's.
-FluidRecord record_of(const SphFluid& f, const Vec3& x, const Vec3& u, double p, double packing = 1.0,
-                      double part = 1.0) {
+/// p is the fluid's own pressure.
+FluidRecord record_of(const SphFluid& f, const Vec3& x, const Vec3& u, double p, double packing, double eps) {
     const double rho = density_of_pressure(f, p) * packing;
-    return {x[0], x[1], x[2], (part * p + f.background_pressure) / (rho * rho), u[0], u[1], u[2], f.mass / rho};
+    return {x[0], x[1], x[2], pressure_entry(f, pushing_pressure(f, p, eps), rho), u[0], u[1], u[2], f.mass / rho};
 }
 
 FluidRecord wall_record(SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane) {
@@ -58,7 +58,9 @@ FluidRecord wall_record(SphFluid& f, std::size_t k, const InterpolatedGroup& gro
     const Vec3 excess = wet ? Vec3(slip.turn * fluid_u + slip.offset - u) : Vec3(Vec3::Zero());
     for (int c = 0; c < f.dimensions; ++c) b.excess[static_cast<std::size_t>(c)][k] = excess[c];
     const Vec3 away = f.domain.minimum_image(x - vector_at(b.mirror, k, f.dimensions));
-    return record_of(f, x, u, wet ? group.p[lane] - f.background_pressure + f.density * f.body_force.dot(away) : 0.0);
+    // the densest packing of equal spheres leaves 1 - pi/sqrt 18; a linear fit beside few particles may leave less
+    b.eps[k] = wet ? std::clamp(group.eps[lane], 0.26, 1.0) : 1.0;
+    return record_of(f, x, u, wet ? group.p[lane] + f.density * f.body_force.dot(away) : 0.0, 1.0, b.eps[k]);
 }
 
 /// Moves a mean towards a value; NaN takes the value.
@@ -70,7 +72,8 @@ void follow(double& mean, double value, double share) {
 /// mirror point send p' + rho c u' with the flow and p' - rho c u' against it. What leaves goes on into the buffer,
 /// nothing comes back. The means are the profile and the pressure of the fluid, continued linearly, at an inlet; the
 /// velocity of the fluid and a pressure antisymmetric about the given one at an outlet. At an even one both are as at
-/// an inlet, so that a jet which meets it is held back by its own pressure. Also sets how the particle moves. Among
+/// an inlet, so that a jet which meets it is held back by its own pressure. A rigid inlet is a piston: no wave changes
+/// its speed, and its pressure is what the fluid before it has, as a wall's. Also sets how the particle moves. Among
 /// grains a profile is superficial, and as much mass comes in whatever room the grains leave.
 FluidRecord open_record(SphFluid& f, std::size_t k, const InterpolatedGroup& group, int lane, double since) {
     BoundaryParticles& b = f.boundary;
@@ -78,16 +81,16 @@ FluidRecord open_record(SphFluid& f, std::size_t k, const InterpolatedGroup& gro
     const double direction = side.is_inlet() ? 1.0 : -1.0, impedance = f.density * f.sound_speed;
     const Vec3 e = direction * side.normal, x = vector_at(b.x, k, f.dimensions), fluid_u = lane_of(group.u, lane);
     const double speed = fluid_u.dot(e);
-    const double part = f.shares_pressure ? b.eps[k] : 1.0; // of the pressure that records hold
-    const double p =
-        (group.p[lane] - f.background_pressure +
-         (side.is_inlet() ? lane_of(group.p_slope, lane).dot(Vec3(x - vector_at(b.mirror, k, f.dimensions))) : 0.0)) /
-        part;
+    const Vec3 away = x - vector_at(b.mirror, k, f.dimensions);
+    // Into an empty vessel: the slope between the first few particles says nothing of the fluid's.
+    const bool sloped = side.is_inlet() && group.covered[lane] > enough_for_slope;
+    const double p = group.p[lane] + (sloped ? lane_of(group.p_slope, lane).dot(away) : 0.0);
     const double share = -std::expm1(-since / side.averaging_time);
     follow(b.mean_speed[k], speed, share);
     follow(b.mean_pressure[k], p, share);
     // the wave that leaves: against the flow at an inlet, with it at an outlet
-    const double wave = 0.5 * (p - b.mean_pressure[k] - direction * impedance * (speed - b.mean_speed[k]));
+    const double wave =
+        side.rigid ? 0.0 : 0.5 * (p - b.mean_pressure[k] - direction * impedance * (speed - b.mean_speed[k]));
     const double mean_p = side.is_inlet() || side.even ? b.mean_pressure[k] : 2.0 * side.pressure - b.mean_pressure[k];
     double mean_u = side.even ? side.mean_outflow / b.eps[k] : b.mean_speed[k];
     if (side.is_inlet()) mean_u = side.inflow(x, f.dimensions) / b.eps[k];
@@ -101,7 +104,7 @@ FluidRecord open_record(SphFluid& f, std::size_t k, const InterpolatedGroup& gro
         b.velocity[static_cast<std::size_t>(c)][k] = moved[c];
         b.mirror_velocity[static_cast<std::size_t>(c)][k] = mirrored[c];
     }
-    return record_of(f, x, u, side.opening > 0.0 ? mean_p + wave : p, b.eps[k] / b.share[k], part);
+    return record_of(f, x, u, side.opening > 0.0 && !side.rigid ? mean_p + wave : p, b.eps[k] / b.share[k], b.eps[k]);
 }
 
 } // namespace
@@ -172,16 +175,18 @@ void mark_boundary_records(SphFluid& f) {
     }
 }
 
-/// The correction of one cluster: - sum m excess_b . grad W = sum over dv = - excess_b.
+/// The correction of one cluster: - sum m excess_b . grad W = sum over dv = - excess_b; - rho_a sum V excess_b . grad W
+/// where operators weigh by volume.
 template <class KernelLaw> void correct_cluster(SphFluid& f, std::size_t cluster) {
     const BoundaryParticles& b = f.boundary;
-    Pack sum{};
+    const bool by_volume = std::holds_alternative<VolumeWeightedOperators>(f.operators);
+    Pack sum{}, over_room{};
     std::array<Pack, 3> x{};
     for (std::size_t lane = 0; lane < pack_width; ++lane) {
         const FluidRecord& own =
             f.clusters.records[static_cast<std::size_t>(f.clusters.record_of[pack_width * cluster + lane])];
         const int l = static_cast<int>(lane);
-        x[0][l] = own.x, x[1][l] = own.y, x[2][l] = own.z;
+        x[0][l] = own.x, x[1][l] = own.y, x[2][l] = own.z, over_room[l] = 1.0 / own.volume;
     }
     for (const std::int32_t record : f.clusters.near(cluster)) {
         const std::int32_t k = b.of_record[static_cast<std::size_t>(record)];
@@ -194,7 +199,8 @@ template <class KernelLaw> void correct_cluster(SphFluid& f, std::size_t cluster
             r_sq += dx * dx;
             excess_dx += broadcast<Pack>(b.excess[c][static_cast<std::size_t>(k)]) * dx;
         }
-        sum -= KernelLaw::f(square_root(r_sq) * broadcast<Pack>(1.0 / f.h)) * excess_dx;
+        const Pack weight = by_volume ? over_room * broadcast<Pack>(other.volume) : broadcast<Pack>(1.0);
+        sum -= weight * KernelLaw::f(square_root(r_sq) * broadcast<Pack>(1.0 / f.h)) * excess_dx;
     }
     const double factor = f.mass * KernelLaw::sigma(f.dimensions) / std::pow(f.h, f.dimensions + 2);
     for (std::size_t lane = 0; lane < pack_width; ++lane)

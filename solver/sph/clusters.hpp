@@ -25,9 +25,10 @@ namespace plumb {
 
 using VectorField = std::array<Field<double>, 3>; // components x, y, z; z unused in the plane
 
-/// What a pair reads of one particle.
+/// What a pair reads of one particle. `pressure` is p/rho^2, or p/m^2 where operators weigh by volume: pressure_of and
+/// pressure_entry (fluid.hpp).
 struct alignas(64) FluidRecord {
-    double x, y, z, p_over_rho_sq, u, v, w, volume;
+    double x, y, z, pressure, u, v, w, volume;
 };
 
 /// Places in groups of eight and where their records are laid out; the records themselves are the owner's.

@@ -19,6 +19,17 @@ struct PlainOperators {
                                   "Monaghan 2005, Rep. Prog. Phys. 68, 1703"};
 };
 
+/// Plain sums that weigh a neighbour by its room V = m/rho and not by its mass: where rooms differ from neighbour to
+/// neighbour, as those of particles of pure fluid do from those that began among grains, the sums of masses count each
+/// as large as a itself. Pairs still exchange momentum, and -p dV of the one is the work of the other.
+struct VolumeWeightedOperators {
+    static constexpr std::string_view name = "volume_weighted";
+    static constexpr LawInfo info{"-1/m_a sum V_a V_b (p_a + p_b) grad W, rho_a sum V_b v_ab . grad W",
+                                  "any; conserves momentum; the room of all particles is not that of the fluid after "
+                                  "long flows (fluid.filling_time)",
+                                  "Colagrossi & Landrini 2003, J. Comput. Phys. 191, 448, sec. 3"};
+};
+
 /// Sums of differences with B_a grad W, B_a^-1 = sum V_b (x_b - x_a) (x) grad_a W: exact for linear fields whatever the
 /// neighbours, at the price of momentum, which is conserved to the order of the scheme only.
 struct CorrectedOperators {
@@ -43,7 +54,7 @@ struct VariableOperators {
         : greatest_growth(table.number_or("greatest_growth", 1.05, {1.0, 2.0, false, false})) {}
 };
 
-using Operators = std::variant<PlainOperators, CorrectedOperators, VariableOperators>;
+using Operators = std::variant<PlainOperators, VolumeWeightedOperators, CorrectedOperators, VariableOperators>;
 
 /// How much longer than h a smoothing length may get.
 inline double greatest_growth(const Operators& operators) {

@@ -65,7 +65,7 @@ struct MomentAndPressure {
         add_square<d>(sums.moment, -(p.f * b.volume), p.dx);
         // V_b (p_b - p_a) with p = (p/rho^2) (m/V)^2
         const Pack m = broadcast<Pack>(mass), rho_a = m / a.volume;
-        const Pack difference = b.p_over_rho_sq * m * (m / b.volume) - b.volume * (a.p_over_rho_sq * (rho_a * rho_a));
+        const Pack difference = b.pressure * m * (m / b.volume) - b.volume * (a.pressure * (rho_a * rho_a));
         add(sums.grad_p, p.f * difference, p.dx);
     }
 };

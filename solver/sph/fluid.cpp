@@ -11,13 +11,15 @@ namespace {
 
 /// Every field of every particle, for whatever has to move with it.
 template <class Visit> void for_each_moving_field(SphFluid& f, Visit&& visit) {
+    // not without memory, and not before the first evaluation of a coupled scene
+    const bool remembers = f.memory > 0.0 && f.drho_before.size() == f.drho.size();
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c)
         for (VectorField* field : {&f.x, &f.v, &f.a, &f.x_listed}) visit((*field)[c]);
     visit(f.rho);
     visit(f.drho);
     if (!f.lengths.omega.empty()) visit(f.lengths.omega);
     if (f.among_grains()) visit(f.share);
-    if (f.drho_before.empty()) return; // without memory, and before the first evaluation of a coupled scene
+    if (!remembers) return;
     for (std::size_t c = 0; c < static_cast<std::size_t>(f.dimensions); ++c) visit(f.a_before[c]);
     visit(f.drho_before);
 }

@@ -40,7 +40,9 @@ struct SphFluid {
     double filling_time = 0.0;        // within which densities follow how full the room is [s], 0: never (filling.hpp)
     bool free_surface = false;        // particles near one are not shifted
     bool keeps_mean_density = false;  // of a closed volume: see keep_mean_density
+    bool has_grains = false;          // also while no particle has come in yet
     bool shares_pressure = false;     // with grains: eps p of a particle is the fluid's (coupling/room_pressure.hpp)
+    double wetting_pressure = 0.0;    // kappa of grains that share it [Pa] (coupling/wetting_laws.hpp)
     double background_pressure = 0.0; // that records hold besides their own, against clumping [Pa]
     double memory = 0.0;              // share of the rates before the last ones in the predictor (advance_fluid.hpp)
 
@@ -51,7 +53,8 @@ struct SphFluid {
     // it is. `rho` is then the mass of pure fluid over the particle's volume: share rho is the superficial density and
     // share rho/eps the density of the fluid itself. Empty without grains.
     Field<double> share, eps;
-    VectorField a_before; // and of the evaluation before that, where memory > 0
+    Field<double> eps_of_record; // where the pressure is shared and there is a boundary
+    VectorField a_before;        // and of the evaluation before that, where memory > 0
     Field<double> drho_before;
     // of the last evaluation, for shifting; empty without: -grad C [1/m], and what v and rho change by along it
     VectorField spread, dv_spread;
@@ -73,7 +76,7 @@ struct SphFluid {
     BoundaryParticles boundary; // of walls and open sides
 
     std::size_t slots() const { return id.size(); }
-    bool among_grains() const { return !share.empty(); }
+    bool among_grains() const { return has_grains || !share.empty(); }
 };
 
 /// Numbers that initial fields and sources may need.
@@ -91,6 +94,32 @@ inline TermScales term_scales(const SphFluid& f) { return {f.mass, f.viscosity, 
 /// Kinematic viscosity that the artificial viscosity adds to shear [m2/s]: alpha c h/(4 (d + 2)). For all pairs it
 /// would be twice that (Monaghan 2005, Rep. Prog. Phys. 68, 1703, sec. 4.2); the term acts on the approaching half.
 inline double artificial_nu(const SphFluid& f) { return f.extras.artificial * f.mass / (4.0 * (f.dimensions + 2)); }
+
+/// What pairs push with where the fluid's own pressure is p: all of it or, where grains share it, its part and what
+/// wetting them gives; and the background [Pa].
+inline double pushing_pressure(const SphFluid& f, double p, double eps) {
+    const double part = f.shares_pressure ? eps * (p - f.wetting_pressure) + f.wetting_pressure : p;
+    return part + f.background_pressure;
+}
+
+/// The fluid's own pressure of that [Pa].
+inline double own_pressure(const SphFluid& f, double pushing, double eps) {
+    const double part = pushing - f.background_pressure;
+    return f.shares_pressure ? (part - f.wetting_pressure) / eps + f.wetting_pressure : part;
+}
+
+/// What a record holds of a pressure p [Pa] that pushes, at a density.
+inline double pressure_entry(const SphFluid& f, double p, double rho) {
+    const double by = std::holds_alternative<VolumeWeightedOperators>(f.operators) ? f.mass : rho;
+    return p / (by * by);
+}
+
+/// The pressure of a record that pushes [Pa].
+inline double pressure_of(const SphFluid& f, const FluidRecord& record) {
+    const bool by_mass = std::holds_alternative<VolumeWeightedOperators>(f.operators);
+    const double by = by_mass ? f.mass : f.mass / record.volume;
+    return record.pressure * by * by;
+}
 
 /// Slots of the particles, ascending by id.
 std::vector<std::int32_t> ordered_slots(const SphFluid& fluid);

@@ -10,11 +10,11 @@ namespace plumb {
 
 struct SphFluid;
 
-/// Velocity [m/s], pressure [Pa] and its slope [Pa/m] at eight places; `covered` is sum V W, 1 well inside the fluid
-/// and 0 far outside.
+/// Velocity [m/s], pressure [Pa], its slope [Pa/m] and the fluid fraction at eight places; `covered` is sum V W, 1 well
+/// inside the fluid and 0 far outside. The pressure is the fluid's own (own_pressure).
 struct InterpolatedGroup {
     std::array<Pack, 3> u{}, p_slope{};
-    Pack p{}, covered{};
+    Pack p{}, eps = broadcast<Pack>(1.0), covered{};
 };
 
 /// At eight places, from the records listed near them: the linear function that fits best with weights V W (exact for

@@ -27,6 +27,7 @@ struct OpenSide {
     double averaging_time = 0.0;         // of the slow mean [s]
     std::optional<InletProfile> profile; // of an inlet
     bool even = false;                   // of an outlet: as fast everywhere, as through a sieve
+    bool rigid = false;                  // of an inlet: a piston, whose speed no wave changes
     double flow_rate = 0.0;  // that the buffer's rows are to bring in together [m3/s]; 0: as the profile says
     double opens_from = 0.0; // of an inlet: closed before [s],
     double opens_over = 0.0; // open after so much more, linearly in between [s]

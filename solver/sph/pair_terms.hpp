@@ -58,8 +58,8 @@ template <int d> struct PairState {
 
 /// What a pair needs to know of one particle besides position and velocity.
 struct Side {
-    Pack p_over_rho_sq; // p/rho^2 [m5/(kg s2)]
-    Pack volume;        // m/rho [m3], [m2] in the plane
+    Pack pressure; // p/rho^2 [m5/(kg s2)]; p/m^2 for the terms of volumes [Pa/kg2]
+    Pack volume;   // m/rho [m3], [m2] in the plane
 };
 
 template <int d> struct Sums {
@@ -98,7 +98,23 @@ struct Continuity {
 struct PressureTerm {
     template <int d>
     [[gnu::always_inline]] void operator()(const PairState<d>& p, const Side& a, const Side& b, Sums<d>& sums) const {
-        subtract(sums.acceleration, p.f * (a.p_over_rho_sq + b.p_over_rho_sq), p.dx);
+        subtract(sums.acceleration, p.f * (a.pressure + b.pressure), p.dx);
+    }
+};
+
+/// d rho_a/dt = rho_a sum V_b dv . grad W
+struct VolumeContinuity {
+    template <int d>
+    [[gnu::always_inline]] void operator()(const PairState<d>& p, const Side& a, const Side& b, Sums<d>& sums) const {
+        sums.density_rate += p.f * p.dv_dx * (b.volume * (broadcast<Pack>(1.0) / a.volume));
+    }
+};
+
+/// m_a dv_a/dt = - sum V_a V_b (p_a + p_b) grad W: conserves momentum.
+struct VolumePressureTerm {
+    template <int d>
+    [[gnu::always_inline]] void operator()(const PairState<d>& p, const Side& a, const Side& b, Sums<d>& sums) const {
+        subtract(sums.acceleration, p.f * (a.volume * b.volume) * (a.pressure + b.pressure), p.dx);
     }
 };
 

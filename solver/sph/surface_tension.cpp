@@ -165,7 +165,7 @@ PullSums<d> pull_sums(const SphFluid& f, std::size_t cluster, const Pack (&lanes
         const FluidRecord& b = f.clusters.records[r];
         const auto dx = fluid_sweep::components<d>(lanes[0] - b.x, lanes[1] - b.y, lanes[2] - b.z);
         const bool wall = !f.boundary.of_record.empty() && f.boundary.of_record[r] >= 0;
-        if (wall && b.p_over_rho_sq == 0.0) continue; // no pressure to be held against: a dry wall
+        if (wall && b.pressure == 0.0) continue; // no pressure to be held against: a dry wall
         const Pack other = wall ? kappa : broadcast<Pack>(f.surface.records[r].curvature);
         const Pack slope = KernelLaw::f(square_root(dot(dx, dx)) * inverse_h), volume = broadcast<Pack>(b.volume);
         add(sums.even, (own + volume * volume) * kappa * slope, dx);

@@ -70,7 +70,7 @@ template <int d, class SlopeOf, class... Terms>
         p.r_sq = dot(p.dx, p.dx);
         p.f = slope(e, p.r_sq);
         p.dv_dx = dot(p.dv, p.dx);
-        const Side other{broadcast<Pack>(b.p_over_rho_sq), broadcast<Pack>(b.volume)};
+        const Side other{broadcast<Pack>(b.pressure), broadcast<Pack>(b.volume)};
         (terms(p, a, other, own), ...);
     }
     sums = own;
@@ -133,8 +133,8 @@ template <class KernelLaw, int d, class Viscous> void evaluate(SphFluid& f, cons
     });
 }
 
-/// The same with more terms.
-template <class KernelLaw, int d, class Viscous, class Spread>
+/// The same with more terms, by mass or by volume.
+template <class KernelLaw, int d, class Density, class Pressure, class Viscous, class Spread>
 void evaluate_with_extras(SphFluid& f, const Viscous& viscous, const Spread& spread) {
     const double gradient = KernelLaw::sigma(d) / std::pow(f.h, d + 2);
     for_cluster_parts(f, [&](std::size_t begin, std::size_t end) {
@@ -142,7 +142,7 @@ void evaluate_with_extras(SphFluid& f, const Viscous& viscous, const Spread& spr
         for (std::size_t c = begin; c < end; ++c) {
             const KeepSlope<KernelLaw> slope{Slope<KernelLaw>(f.h), room_for_slopes(slopes, f.clusters, c)};
             Sums<d> sums = no_sums<d>();
-            add_over_neighbours<d>(f.clusters, c, slope, sums, Continuity{}, PressureTerm{}, viscous, spread);
+            add_over_neighbours<d>(f.clusters, c, slope, sums, Density{}, Pressure{}, viscous, spread);
             add_extras<d>(f, c, slopes, sums);
             store_rates<d>(f, c, f.mass * gradient, sums);
             if (f.shifting > 0.0) store_spread<d>(f, c, gradient, sums);
@@ -151,12 +151,17 @@ void evaluate_with_extras(SphFluid& f, const Viscous& viscous, const Spread& spr
 }
 
 template <class KernelLaw, int d, class Viscous> void evaluate_any(SphFluid& f, const Viscous& viscous) {
-    if (f.shifting > 0.0)
-        evaluate_with_extras<KernelLaw, d>(f, viscous, ConcentrationGradient{});
+    if (std::holds_alternative<VolumeWeightedOperators>(f.operators))
+        f.shifting > 0.0
+            ? evaluate_with_extras<KernelLaw, d, VolumeContinuity, VolumePressureTerm>(f, viscous,
+                                                                                       ConcentrationGradient{})
+            : evaluate_with_extras<KernelLaw, d, VolumeContinuity, VolumePressureTerm>(f, viscous, NoTerm{});
+    else if (f.shifting > 0.0)
+        evaluate_with_extras<KernelLaw, d, Continuity, PressureTerm>(f, viscous, ConcentrationGradient{});
     else if (f.extras.idle())
         evaluate<KernelLaw, d>(f, viscous);
     else
-        evaluate_with_extras<KernelLaw, d>(f, viscous, NoTerm{});
+        evaluate_with_extras<KernelLaw, d, Continuity, PressureTerm>(f, viscous, NoTerm{});
 }
 
 } // namespace fluid_sweep

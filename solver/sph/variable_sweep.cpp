@@ -68,11 +68,11 @@ void evaluate_cluster(SphFluid& f, std::size_t cluster, const Viscous& viscous, 
         p.dv_dx = dot(p.dv, p.dx);
         const Pack r = square_root(p.r_sq), q = r * inverse_h;
         const Pack shape = KernelLaw::f(q), other_shape = KernelLaw::f(r * broadcast<Pack>(length.inverse_h));
-        const Side other{broadcast<Pack>(b.p_over_rho_sq), broadcast<Pack>(b.volume)};
+        const Side other{broadcast<Pack>(b.pressure), broadcast<Pack>(b.volume)};
         sums.density_rate += factor_over_omega * shape * p.dv_dx;
         subtract(sums.acceleration,
-                 a.p_over_rho_sq * factor_over_omega * shape +
-                     other.p_over_rho_sq * broadcast<Pack>(length.factor_over_omega) * other_shape,
+                 a.pressure * factor_over_omega * shape +
+                     other.pressure * broadcast<Pack>(length.factor_over_omega) * other_shape,
                  p.dx);
         const Pack inside = select(q < reach, broadcast<Pack>(1.0), zero);
         growth += inside * (broadcast<Pack>(d) * KernelLaw::w(q) + q * q * shape);

@@ -198,12 +198,12 @@ TEST(Coupled, BadScenesAreInputErrors) {
     refused({{"fluid.pressure", "\"full\""}}, {"coupling.forces", "buoyancy", "full"});
     refused({{"coupling.forces", "[\"pressure_gradient\", \"virtual_mass\"]"}, {"fluid.pressure", "\"full\""}},
             {"coupling.forces", "virtual_mass", "weight"});
-    refused({{"fluid.operators", "\"corrected\""}}, {"coupling.direction", "plain"});
+    refused({{"fluid.operators", "\"corrected\""}}, {"coupling.direction", "corrected"});
     refused({{"fluid.operators", "{law = \"variable_h\", greatest_growth = 1.01}"}},
             {"coupling.porosity_width", "eps", "greatest_growth = 1.08"});
     refused({{"fluid.operators", "{law = \"variable_h\", greatest_growth = 0.9}"}}, {"fluid.operators", "0.9"});
     refused({{"fluid.density_diffusion", "0.1"}, {"fluid.operators", "{law = \"variable_h\", greatest_growth = 1.3}"}},
-            {"coupling.direction", "density_diffusion", "plain"});
+            {"coupling.direction", "density_diffusion", "variable_h"});
     refused({{"time.grain_step", ""}}, {"time.grain_step: missing"});
     refused({{"time.grain_step", "-1.0"}}, {"time.grain_step", "-1"});
     refused({{"grains.arrange", "\"none\""}}, {"grains"});

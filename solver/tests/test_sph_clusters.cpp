@@ -117,7 +117,7 @@ void expect_sound_records(const Built& built, const Cloud& cloud) {
         const auto source = static_cast<std::size_t>(clusters.image_of[r]);
         ASSERT_EQ(static_cast<std::size_t>(clusters.image_of[source]), source) << "an image of an image";
         EXPECT_EQ(record.volume, clusters.records[source].volume);
-        EXPECT_TRUE(record.p_over_rho_sq == 1.0 && record.u == 2.0 && record.v == 3.0 && record.w == 4.0);
+        EXPECT_TRUE(record.pressure == 1.0 && record.u == 2.0 && record.v == 3.0 && record.w == 4.0);
         const auto slot = static_cast<std::size_t>(record.volume);
         if (source == r) ++own[slot];
         const int code = clusters.image_shift[r];

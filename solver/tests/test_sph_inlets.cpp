@@ -83,6 +83,38 @@ TEST(SphInlets, OpenWhenTheyAreTold) {
     EXPECT_EQ(f.open_sides[1].opening, 1.0);
 }
 
+// Fields that no particle has given their size yet when the first ones come in; an inlet whose speed answers to what
+// little is before it.
+TEST(SphInlets, FillAnEmptyVesselOfGrains) {
+    std::string scene = cell(pipe + "rigid = true\n");
+    const auto replace = [&](const std::string& what, const std::string& by) {
+        scene.replace(scene.find(what), what.size(), by);
+    };
+    for (std::size_t at = 0; (at = scene.find("slip = ", at)) != std::string::npos; at += 20)
+        scene.insert(at, "holds = \"fluid\"\n"); // grains are held where they are
+    const std::size_t outlet = scene.find("[[outlet]]");
+    scene.erase(outlet, scene.find("[time]") - outlet);
+    replace("arrange = {law = \"lattice\"}", "free_surface = true\nfill = {law = \"nothing\"}\nartificial_viscosity = "
+                                             "0.1\ndensity_diffusion = 0.3\narrange = {law = \"lattice\"}");
+    scene +=
+        "[grains]\nname = \"seed\"\ndensity = 2000.0\ndiameter = 1e-3\nrotation = false\nmotion = \"fixed\"\n"
+        "arrange = {law = \"lattice\", kind = \"cubic\", spacing = 2e-3, lower = [3e-3, 3e-3, 3e-3], upper = [6e-3, "
+        "6e-3, 7e-3]}\nvelocity = [0.0, 0.0, 0.0]\ncontact = \"none\"\n"
+        "[coupling]\ndirection = \"two_way\"\nkernel = \"wendland_c2\"\nkernel_width = {times_smoothing = 1.0}\n"
+        "porosity = \"kernel\"\nown_volume = \"included\"\nfluid_mass = \"displaced\"\npressure_force = \"shared\"\n"
+        "drag = \"gidaspow\"\nforces = [\"pressure_gradient\"]\nexchange = \"exponential\"\nself_disturbance = "
+        "\"none\"\nsuspension_viscosity = \"none\"\n";
+    replace("step = 1e-4", "step = 1e-4\ngrain_step = 1e-4");
+    Bench bench(scene);
+    const SphFluid& f = bench.fluid();
+    EXPECT_EQ(f.particles, 0U);
+    advance(bench.simulation, 300); // 30 ms
+    double mass = 0.0;
+    for (std::size_t k = 0; k < f.slots(); ++k)
+        if (f.id[k] >= 0) mass += f.mass * f.share[k];
+    EXPECT_NEAR(mass / f.density / 0.03, flow_rate, 0.1 * flow_rate); // of 12 rows each may be half a particle ahead
+}
+
 TEST(SphInlets, RefuseWhatCannotBe) {
     expect_refused(cell("profile = {law = \"uniform\", speed = 1.0}\nflow_rate = 0.0\n"), {"inlet", "flow_rate"});
     expect_refused(cell(pipe + "opens = {from = 0.1}\n"), {"opens", "over"});

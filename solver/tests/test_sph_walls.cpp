@@ -60,11 +60,6 @@ FluidRecord record_of_boundary(const SphFluid& f, std::size_t k) {
     return f.clusters.records[static_cast<std::size_t>(f.clusters.record_of_passive[k])];
 }
 
-double pressure_of(const SphFluid& f, const FluidRecord& r) {
-    const double rho = f.mass / r.volume;
-    return r.p_over_rho_sq * rho * rho;
-}
-
 } // namespace
 
 // A wall lattice that is shifted, too thin, doubled, or mirrored about the particles instead of the surface.
