@@ -1,28 +1,21 @@
 """Water that comes in below a dry bed of grains: does it rise in the pores, or does it lift the bed (README.md)."""
 
 import math
+import sys
+from pathlib import Path
 
 import numpy as np
 
-G = 9.81
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
+
+from theory import dispersion_cell  # noqa: E402
+from theory.dispersion_cell import area, beyond_walls, cell_of, grains_lost, settled, times  # noqa: E402
+
 UNITS = {"lift": "1", "water_missed": "1", "beyond_walls": "1", "grains_lost": "1", "wet_top": "m"}
 
 
 # --- the scene ---
-
-
-def cell_of(scene):
-    """Axis, radius and height of the cell, m."""
-    wall = next(w for w in scene["wall"] if w["shape"] == "cylinder")
-    return np.array(wall["point"][:2]), wall["radius"], scene["domain"]["size"][2]
-
-
-def area(scene):
-    return math.pi * cell_of(scene)[1] ** 2
-
-
-def grain_volume(scene):
-    return math.pi / 6.0 * scene["grains"]["diameter"] ** 3
 
 
 def volume_let_in(scene, t):
@@ -35,8 +28,7 @@ def volume_let_in(scene, t):
 
 def weight(scene):
     """Of the dry bed over the cell's area, Pa."""
-    grains = scene["grains"]
-    return grains["density"] * G * grains["arrange"]["count"] * grain_volume(scene) / area(scene)
+    return dispersion_cell.weight(scene, 0.0)
 
 
 def wetting(scene):
@@ -56,22 +48,7 @@ def lifting_ratio(scene, eps):
     return entry_pressure(scene, eps) / weight(scene)
 
 
-def lifting_angle(scene, eps):
-    """Contact angle at which the two are equal, degrees."""
-    cosine = -weight(scene) * scene["grains"]["diameter"] * eps / (6.0 * 0.072 * (1.0 - eps))
-    return math.degrees(math.acos(cosine)) if cosine > -1.0 else math.nan
-
-
 # --- a run ---
-
-
-def times(run):
-    return np.arange(len(run.snapshot_files())) * run.scene["time"]["output_interval"]
-
-
-def settled(run):
-    """Number of the last snapshot before water comes in."""
-    return int(np.nonzero(times(run) <= run.scene["inlet"][0]["opens"]["from"])[0][-1])
 
 
 def underside(run, k):
@@ -108,21 +85,6 @@ def water_missed(run):
     return worst / (area(scene) * cell_of(scene)[2])
 
 
-def beyond_walls(run):
-    """How deep the grains' surfaces are behind walls at most, in diameters."""
-    scene, d = run.scene, run.scene["grains"]["diameter"]
-    axis, radius, _ = cell_of(scene)
-    worst = -math.inf
-    for k in range(len(run.snapshot_files())):
-        x = run.snapshot(k)["grains"]["x"]
-        worst = max(worst, np.max(np.hypot(*(x[:, :2] - axis).T)) - radius, -np.min(x[:, 2]))
-    return float(max(worst / d + 0.5, 0.0))
-
-
-def grains_lost(run):
-    return float(run.scene["grains"]["arrange"]["count"] - len(run.snapshot(len(run.snapshot_files()) - 1)["grains"]["id"]))
-
-
 def wet_top(run, k):
     """Height that 95 % of the water is below, m."""
     z = run.snapshot(k)["fluid"]["x"][:, 2]
@@ -134,7 +96,7 @@ def measure(quantity, run):
     of_run = {
         "lift": lambda: lift(run, last),
         "water_missed": lambda: water_missed(run),
-        "beyond_walls": lambda: beyond_walls(run),
+        "beyond_walls": lambda: beyond_walls(run, ceiling=False),
         "grains_lost": lambda: grains_lost(run),
         "wet_top": lambda: wet_top(run, last),
     }.get(quantity)

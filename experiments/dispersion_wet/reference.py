@@ -11,9 +11,10 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
 from drag_laws.drag_laws import LAWS  # noqa: E402
+from theory import dispersion_cell  # noqa: E402
 from theory.bed_on_floor import part_below  # noqa: E402
+from theory.dispersion_cell import G, area, beyond_walls, cell_of, grain_volume, grains_lost, settled, times  # noqa: E402
 
-G = 9.81
 OPEN = 0.75  # porosity above which the axis counts as cavity: half way from a settled bed to clear water
 NEAR_AXIS = 1.5  # spacings around the axis
 UNITS = {
@@ -33,20 +34,6 @@ UNITS = {
 # --- the scene ---
 
 
-def cell_of(scene):
-    """Axis, radius and height of the cell, m."""
-    wall = next(w for w in scene["wall"] if w["shape"] == "cylinder")
-    return np.array(wall["point"][:2]), wall["radius"], scene["domain"]["size"][2]
-
-
-def area(scene):
-    return math.pi * cell_of(scene)[1] ** 2
-
-
-def grain_volume(scene):
-    return math.pi / 6.0 * scene["grains"]["diameter"] ** 3
-
-
 def jet_start(scene):
     opens = scene["inlet"][0]["opens"]
     return opens["from"] + opens["over"]
@@ -54,8 +41,7 @@ def jet_start(scene):
 
 def weight(scene):
     """Of all grains in water, over the cell's area, Pa."""
-    grains = scene["grains"]
-    return (grains["density"] - scene["fluid"]["density"]) * G * grains["arrange"]["count"] * grain_volume(scene) / area(scene)
+    return dispersion_cell.weight(scene, scene["fluid"]["density"])
 
 
 def jet_reynolds(scene):
@@ -81,19 +67,10 @@ def expanded_height(scene):
 # --- a run ---
 
 
-def times(run):
-    return np.arange(len(run.snapshot_files())) * run.scene["time"]["output_interval"]
-
-
 def late(run):
     """Numbers of the snapshots of the last half of the time with the full jet."""
     t, start = times(run), jet_start(run.scene)
     return np.nonzero(t >= start + 0.5 * (t[-1] - start))[0]
-
-
-def settled(run):
-    """Number of the last snapshot before the jet."""
-    return int(np.nonzero(times(run) <= run.scene["inlet"][0]["opens"]["from"])[0][-1])
 
 
 def porosity(run):
@@ -145,21 +122,6 @@ def water_missed(run):
     return float(np.max(np.abs(mass / mass[0] - 1.0)))
 
 
-def beyond_walls(run):
-    """How deep the grains' surfaces are behind walls at most, in diameters."""
-    scene, d = run.scene, run.scene["grains"]["diameter"]
-    axis, radius, height = cell_of(scene)
-    worst = -math.inf
-    for k in range(len(run.snapshot_files())):
-        x = run.snapshot(k)["grains"]["x"]
-        worst = max(worst, np.max(np.hypot(*(x[:, :2] - axis).T)) - radius, -np.min(x[:, 2]), np.max(x[:, 2]) - height)
-    return float(max(worst / d + 0.5, 0.0))
-
-
-def grains_lost(run):
-    return float(run.scene["grains"]["arrange"]["count"] - len(run.snapshot(len(run.snapshot_files()) - 1)["grains"]["id"]))
-
-
 def cavity_height(run, k):
     """To where the axis is open from the bore on, m."""
     scene, fluid = run.scene, run.snapshot(k)["fluid"]
@@ -208,7 +170,7 @@ def measure(quantity, run):
         "porosity": porosity,
         "carried": carried,
         "water_missed": water_missed,
-        "beyond_walls": beyond_walls,
+        "beyond_walls": lambda run: beyond_walls(run, ceiling=True),
         "grains_lost": grains_lost,
         "piercing": piercing,
         "height": lambda run: late_mean(run, mean_height),

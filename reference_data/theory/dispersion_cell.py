@@ -1,0 +1,53 @@
+"""The dispersion cell as both its cases, wet and dry, measure it: shape, grains, and when the jet comes in."""
+
+import math
+
+import numpy as np
+
+G = 9.81
+
+
+def cell_of(scene):
+    """Axis, radius and height of the cell, m."""
+    wall = next(w for w in scene["wall"] if w["shape"] == "cylinder")
+    return np.array(wall["point"][:2]), wall["radius"], scene["domain"]["size"][2]
+
+
+def area(scene):
+    return math.pi * cell_of(scene)[1] ** 2
+
+
+def grain_volume(scene):
+    return math.pi / 6.0 * scene["grains"]["diameter"] ** 3
+
+
+def weight(scene, surrounding):
+    """Of all grains in a fluid of density `surrounding` (kg/m3), over the cell's area, Pa."""
+    grains = scene["grains"]
+    return (grains["density"] - surrounding) * G * grains["arrange"]["count"] * grain_volume(scene) / area(scene)
+
+
+def times(run):
+    """Of the snapshots, s."""
+    return np.arange(len(run.snapshot_files())) * run.scene["time"]["output_interval"]
+
+
+def settled(run):
+    """Number of the last snapshot before the jet."""
+    return int(np.nonzero(times(run) <= run.scene["inlet"][0]["opens"]["from"])[0][-1])
+
+
+def beyond_walls(run, ceiling):
+    """How deep the grains' surfaces are behind walls at most, in diameters; behind a sieve at the top, too, where there is one."""
+    scene, d = run.scene, run.scene["grains"]["diameter"]
+    axis, radius, height = cell_of(scene)
+    worst = -math.inf
+    for k in range(len(run.snapshot_files())):
+        x = run.snapshot(k)["grains"]["x"]
+        above = np.max(x[:, 2]) - height if ceiling else -math.inf
+        worst = max(worst, np.max(np.hypot(*(x[:, :2] - axis).T)) - radius, -np.min(x[:, 2]), above)
+    return float(max(worst / d + 0.5, 0.0))
+
+
+def grains_lost(run):
+    return float(run.scene["grains"]["arrange"]["count"] - len(run.snapshot(len(run.snapshot_files()) - 1)["grains"]["id"]))
