@@ -10,7 +10,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 
 from theory import dispersion_cell  # noqa: E402
-from theory.dispersion_cell import area, beyond_walls, cell_of, grains_lost, settled, times  # noqa: E402
+from theory.dispersion_cell import area, beyond_walls, cell_of, grains_lost, mass_in, settled, times  # noqa: E402
 
 UNITS = {"lift": "1", "water_missed": "1", "beyond_walls": "1", "grains_lost": "1", "wet_top": "m"}
 
@@ -62,27 +62,12 @@ def lift(run, k):
     return risen * area(run.scene) / max(volume_let_in(run.scene, times(run)[k]), 1e-12)
 
 
-def water_of(run, k):
-    fluid = run.snapshot(k)["fluid"]
-    return float(np.sum(fluid["mass"])) / run.scene["fluid"]["density"] if "mass" in fluid else 0.0
-
-
 def water_missed(run):
-    """Greatest difference between the water in the cell and what was let in, over the cell's volume. Rows at the inlet count as far as they are in."""
-    scene, worst = run.scene, 0.0
-    dx = scene["fluid"]["spacing"]
-    for k, t in enumerate(times(run)):
-        snapshot = run.snapshot(k)
-        rows = 0.0
-        if "walls" in snapshot:  # a row that is half way through the plane is half in; a particle that is in is so by half its row at once
-            z = snapshot["walls"]["x"][snapshot["walls"]["side"] == 0, 2]
-            rows = float(np.sum(np.clip(z / dx + 0.5, 0.0, 1.0))) * dx**3
-            inside = snapshot["fluid"]["x"]
-            bore = next(w["radius"] for w in scene["wall"] if w["shape"] == "bored_plane")
-            near = (np.hypot(*(inside[:, :2] - cell_of(scene)[0]).T) < bore) & (inside[:, 2] < 0.5 * dx) if len(inside) else []
-            rows -= float(np.sum(0.5 - inside[near, 2] / dx)) * dx**3 if len(inside) else 0.0
-        worst = max(worst, abs(water_of(run, k) + rows - volume_let_in(scene, t)))
-    return worst / (area(scene) * cell_of(scene)[2])
+    """Greatest difference between the water in the cell and what was let in, over the cell's volume."""
+    scene = run.scene
+    before = mass_in(run, settled(run))  # the row that waits at the plane
+    missed = [(mass_in(run, k) - before) / scene["fluid"]["density"] - volume_let_in(scene, t) for k, t in enumerate(times(run))]
+    return float(np.max(np.abs(missed))) / (area(scene) * cell_of(scene)[2])
 
 
 def wet_top(run, k):

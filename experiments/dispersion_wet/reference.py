@@ -13,10 +13,11 @@ sys.path.insert(0, str(HERE.parents[1] / "reference_data"))
 from drag_laws.drag_laws import LAWS  # noqa: E402
 from theory import dispersion_cell  # noqa: E402
 from theory.bed_on_floor import part_below  # noqa: E402
-from theory.dispersion_cell import G, area, beyond_walls, cell_of, grain_volume, grains_lost, settled, times  # noqa: E402
+from theory.dispersion_cell import G, area, beyond_walls, cell_of, grain_volume, grains_lost, mass_in, settled, times  # noqa: E402
 
 OPEN = 0.75  # porosity above which the axis counts as cavity: half way from a settled bed to clear water
 NEAR_AXIS = 1.5  # spacings around the axis
+CORE = 1.0 / 3.0  # of the cell's radius: a ninth of its area
 UNITS = {
     "porosity": "1",
     "carried": "1",
@@ -27,7 +28,9 @@ UNITS = {
     "cavity": "m",
     "swing": "m",
     "top": "m",
-    "piercing": "1",
+    "core_flow": "1",
+    "raised": "1",
+    "height_change": "1",
 }
 
 
@@ -106,19 +109,9 @@ def carried(run):
     return float(np.mean([floor_pressure(run, k) for k in late(run)])) / weight(run.scene)
 
 
-def water_in(run, k):
-    """Mass of water below the outlet, kg: a layer of the buffer's lattice that is half way out counts half."""
-    scene, snapshot = run.scene, run.snapshot(k)
-    _, _, height = cell_of(scene)
-    dx, walls = scene["fluid"]["spacing"], snapshot["walls"]
-    outlet = walls["x"][walls["side"] == 1, 2] - height
-    layer = np.sum(outlet < np.min(outlet) + 0.5 * dx) * scene["fluid"]["density"] * dx**3
-    return float(np.sum(snapshot["fluid"]["mass"])) + layer * (0.5 - np.min(outlet) / dx)
-
-
 def water_missed(run):
     """Greatest change of the mass of water in the cell, relative."""
-    mass = over_time(run, water_in)
+    mass = over_time(run, mass_in)
     return float(np.max(np.abs(mass / mass[0] - 1.0)))
 
 
@@ -151,18 +144,32 @@ def mean_height(run, k):
     return float(np.mean(run.snapshot(k)["grains"]["x"][:, 2]))
 
 
-def piercing(run):
-    """Share of the last half of the jet's time in which the axis is open through the bed."""
-    return late_mean(run, lambda run, k: float(cavity_height(run, k) >= bed_top(run, k)))
+def core_flow(run):
+    """Part of the water through the bed's top (a diameter up and down) that goes through the inner third of the radius; 1/9 where it is even."""
+    scene, d = run.scene, run.scene["grains"]["diameter"]
+    axis, radius, _ = cell_of(scene)
+    core = whole = 0.0
+    for k in late(run):
+        fluid, top = run.snapshot(k)["fluid"], bed_top(run, k)
+        there = np.abs(fluid["x"][:, 2] - top) < d
+        momentum = (fluid["mass"] * fluid["v"][:, 2])[there]
+        core += np.sum(momentum[np.hypot(*(fluid["x"][there, :2] - axis).T) < CORE * radius])
+        whole += np.sum(momentum)
+    return float(core / whole)
+
+
+def raised(run):
+    """Of the grains' mean height by the jet, over that of the settled bed."""
+    return late_mean(run, mean_height) / mean_height(run, settled(run)) - 1.0
 
 
 def regime(run):
-    """`packed`: the bed lies; `breakthrough`: the jet goes through it most of the time; `impregnation`: it is lifted and the jet stays within."""
+    """`packed`: the bed lies; `breakthrough`: more than half of the water leaves it through a ninth of its top; `impregnation`: it is lifted and the jet stays within."""
     if len(late(run)) == 0:
         return "no jet yet"
-    if late_mean(run, mean_height) < 1.02 * mean_height(run, settled(run)):
+    if raised(run) < 0.02:
         return "packed"
-    return "breakthrough" if piercing(run) > 0.5 else "impregnation"
+    return "breakthrough" if core_flow(run) > 0.5 else "impregnation"
 
 
 def measure(quantity, run):
@@ -172,7 +179,9 @@ def measure(quantity, run):
         "water_missed": water_missed,
         "beyond_walls": lambda run: beyond_walls(run, ceiling=True),
         "grains_lost": grains_lost,
-        "piercing": piercing,
+        "core_flow": core_flow,
+        "raised": raised,
+        "height_change": lambda run: late_mean(run, mean_height) / late_mean(run.other("seeds_22"), mean_height) - 1.0,
         "height": lambda run: late_mean(run, mean_height),
         "cavity": lambda run: late_mean(run, cavity_height),
         "top": lambda run: late_mean(run, bed_top),

@@ -37,6 +37,24 @@ def settled(run):
     return int(np.nonzero(times(run) <= run.scene["inlet"][0]["opens"]["from"])[0][-1])
 
 
+def mass_in(run, k):
+    """Mass of water in the cell, kg. A row at the inlet (side 0) counts more and more over its last spacing before the plane, the layer of an even outlet (side 1) over one about it."""
+    scene, snapshot = run.scene, run.snapshot(k)
+    _, _, height = cell_of(scene)
+    dx, fluid, walls = scene["fluid"]["spacing"], snapshot["fluid"], snapshot.get("walls")
+    mass = float(np.sum(fluid["mass"])) if "mass" in fluid else 0.0
+    if walls is None:
+        return mass
+    z, part = walls["x"][:, 2] / dx, np.zeros(len(walls["side"]))
+    at_inlet, at_outlet = walls["side"] == 0, walls["side"] == 1
+    part[at_inlet] = np.clip(1.0 + z[at_inlet], 0.0, 1.0)
+    if at_outlet.any():
+        above = z - height / dx
+        first = at_outlet & (above < np.min(above[at_outlet]) + 0.5)
+        part[first] = 0.5 - above[first]
+    return mass + float(np.sum(part * walls["mass"]))
+
+
 def beyond_walls(run, ceiling):
     """How deep the grains' surfaces are behind walls at most, in diameters; behind a sieve at the top, too, where there is one."""
     scene, d = run.scene, run.scene["grains"]["diameter"]

@@ -152,7 +152,7 @@ void write_fluid(Hdf5Writer& file, const GridFluid& f) {
 }
 
 /// Particles of walls and open sides with the state that the fluid saw last; `side` numbers the open sides, -1 at
-/// walls.
+/// walls; `mass` is what a buffer's particle brings when it comes in.
 void write_boundary(Hdf5Writer& file, const SphFluid& f) {
     const std::size_t n = f.boundary.size();
     if (n == 0) return;
@@ -170,7 +170,10 @@ void write_boundary(Hdf5Writer& file, const SphFluid& f) {
     file.write("walls/v", std::span<const double>(v), {n, 3});
     file.write("walls/p", p);
     file.write("walls/side", f.boundary.side);
-    for (const auto& [name, units] : {std::pair{"x", "m"}, {"v", "m/s"}, {"p", "Pa"}, {"side", "1"}})
+    std::vector<double> mass(n);
+    for (std::size_t k = 0; k < n; ++k) mass[k] = f.mass * f.boundary.share[k];
+    file.write("walls/mass", mass);
+    for (const auto& [name, units] : {std::pair{"x", "m"}, {"v", "m/s"}, {"p", "Pa"}, {"side", "1"}, {"mass", "kg"}})
         file.attribute(fmt::format("walls/{}", name), "units", std::string(units));
 }
 

@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <tuple>
+#include <vector>
 
 namespace plumb {
 
@@ -50,20 +53,47 @@ void move_along(SphFluid& f, std::size_t k, const OpenSide& side, double way) {
     }
 }
 
+/// Share of a particle of the fluid in a full one's mass.
+double share_of(const SphFluid& f, std::size_t slot) { return f.among_grains() ? f.share[slot] : 1.0; }
+
+/// Takes away the fluid next to a layer: as much as the layer is, to a particle, the nearest first, and none beyond
+/// `furthest`. What is behind the layer goes in any case.
+void take_away(SphFluid& f, const OpenSide& side, double layer, double furthest, double shares) {
+    struct Near {
+        double distance;
+        std::int32_t id; // the order of slots must not matter
+        std::size_t slot;
+    };
+    std::vector<Near> near;
+    for (std::size_t k = 0; k < f.slots(); ++k) {
+        const double distance = f.id[k] < 0 ? furthest : side.distance(vector_at(f.x, k, f.dimensions));
+        if (distance < furthest) near.push_back({distance, f.id[k], k});
+    }
+    std::sort(near.begin(), near.end(),
+              [](const Near& a, const Near& b) { return std::tie(a.distance, a.id) < std::tie(b.distance, b.id); });
+    for (const Near& particle : near) {
+        const double share = share_of(f, particle.slot);
+        if (particle.distance > layer && shares < 0.5 * share) return;
+        shares -= share;
+        f.id[particle.slot] = -1; // vanishes with the next order of the slots
+        --f.particles;
+    }
+}
+
 /// The layer at the far end takes the place of the fluid at the plane.
 void replace_fluid(SphFluid& f, std::size_t s, Lattice& lattice) {
     const OpenSide& side = f.open_sides[s];
     const double depth = lattice.layers(f.spacing) * f.spacing;
-    for (std::size_t k = 0; k < f.boundary.size(); ++k)
-        if (is_of(f, k, s) && side.distance(vector_at(f.boundary.x, k, f.dimensions)) < lattice.last + 0.5 * f.spacing)
-            move_along(f, k, side, depth);
+    double shares = 0.0;
+    for (std::size_t k = 0; k < f.boundary.size(); ++k) {
+        if (!is_of(f, k, s)) continue;
+        if (side.distance(vector_at(f.boundary.x, k, f.dimensions)) >= lattice.last + 0.5 * f.spacing) continue;
+        shares += f.boundary.share[k];
+        move_along(f, k, side, depth);
+    }
     lattice.first += f.spacing;
     lattice.last += f.spacing;
-    for (std::size_t k = 0; k < f.slots(); ++k) {
-        if (f.id[k] < 0 || side.distance(vector_at(f.x, k, f.dimensions)) >= lattice.first + 0.5 * f.spacing) continue;
-        f.id[k] = -1; // vanishes with the next order of the slots
-        --f.particles;
-    }
+    take_away(f, side, lattice.first, lattice.first + f.spacing, shares);
 }
 
 /// The layer at the plane becomes fluid.
@@ -98,19 +128,13 @@ void stop_at_lattice(SphFluid& f, const OpenSide& side, const Lattice& lattice) 
 } // namespace
 
 double mass_inside(const SphFluid& f) {
-    const auto in_front = [&](const OpenSide& side, const Vec3& x) {
-        return std::clamp(side.distance(x) / f.spacing + 0.5, 0.0, 1.0);
-    };
-    double shares = ordered_sum(f.slots(), 0.0, [&](std::size_t k) {
-        double part = f.id[k] < 0 ? 0.0 : f.among_grains() ? f.share[k] : 1.0;
-        for (const OpenSide& side : f.open_sides)
-            if (!side.even) part *= in_front(side, vector_at(f.x, k, f.dimensions));
-        return part;
-    });
+    double shares = ordered_sum(f.slots(), 0.0, [&](std::size_t k) { return f.id[k] < 0 ? 0.0 : share_of(f, k); });
     for (std::size_t k = 0; k < f.boundary.size(); ++k) {
         if (f.boundary.side[k] < 0) continue;
         const OpenSide& side = f.open_sides[static_cast<std::size_t>(f.boundary.side[k])];
-        if (!side.even) shares += f.boundary.share[k] * in_front(side, vector_at(f.boundary.x, k, f.dimensions));
+        if (side.even) continue;
+        const double distance = side.distance(vector_at(f.boundary.x, k, f.dimensions));
+        shares += f.boundary.share[k] * std::clamp(1.0 + distance / f.spacing, 0.0, 1.0);
     }
     for (std::size_t s = 0; s < f.open_sides.size(); ++s) {
         if (!f.open_sides[s].even) continue;

@@ -13,7 +13,8 @@ struct SphFluid;
 /// or is missing.
 void set_even_outflow(SphFluid& fluid);
 
-/// Mass in front of all open sides [kg]: a row passes a plane over a spacing of its way, not at once.
+/// Mass in front of all open sides [kg]: a row of a buffer counts more and more over its last spacing before the plane,
+/// so that what passes counts steadily, wherever the fluid's own particles are.
 double mass_inside(const SphFluid& fluid);
 
 /// Fluid and lattice change places at the planes. The lists have to be renewed.
